@@ -1,0 +1,31 @@
+# Compiler settings shared by every room.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+find_program(WIREPOSE_CCACHE ccache)
+if(WIREPOSE_CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER ${WIREPOSE_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${WIREPOSE_CCACHE})
+endif()
+
+# Warnings of our own code are errors; generated code links without this target.
+add_library(wirepose_warnings INTERFACE)
+target_compile_options(wirepose_warnings INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual
+                            -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Werror>)
+
+# Rules of the recognizer core. Private to its rooms: the host side may use exceptions and RTTI.
+add_library(wirepose_core_rules INTERFACE)
+target_compile_options(wirepose_core_rules INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti -fno-threadsafe-statics -ffunction-sections -fdata-sections>)
+
+if(WIREPOSE_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()

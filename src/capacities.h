@@ -1,0 +1,40 @@
+// Every limit of the recognizer, with its reason. Relations between limits are checked by the compiler.
+// When a list is full it keeps its best elements and the number dropped is published.
+#ifndef WIREPOSE_CAPACITIES_H_
+#define WIREPOSE_CAPACITIES_H_
+
+#include <cstddef>
+#include <cstdint>
+
+namespace wirepose {
+
+// --- Image ---------------------------------------------------------------------------------------------------------
+// The paper's camera. Static image planes are sized by it; wider inputs are refused when the calibration is loaded.
+inline constexpr int kMaxImageWidth = 640;
+inline constexpr int kMaxImageHeight = 480;
+inline constexpr std::size_t kMaxPixels = std::size_t{kMaxImageWidth} * kMaxImageHeight;
+
+// --- Models --------------------------------------------------------------------------------------------------------
+inline constexpr std::size_t kMaxModels = 16;          // objects searched for at once (memory budget is stated for 16)
+inline constexpr std::size_t kMaxModelVertices = 512;  // a refrigerator with two doors and handles has 118
+inline constexpr std::size_t kMaxModelTriangles = 1024;
+inline constexpr std::size_t kMaxModelFaces = 256;     // planar surfaces after coplanar triangles are merged
+inline constexpr std::size_t kMaxModelEdges = 256;     // crease edges; also the width of a visibility bit set
+inline constexpr std::size_t kMaxLineSetEdges = 48;    // longest edges, the only ones that found line sets
+inline constexpr std::size_t kMaxModelLineSets = 2 * kMaxLineSetEdges;  // one parallel, one intersecting per base line
+inline constexpr std::size_t kMaxModelSetMembers = kMaxLineSetEdges * (kMaxLineSetEdges - 1);
+inline constexpr std::size_t kMaxModelSymmetries = 24;  // rotations of a cube, identity included
+inline constexpr std::size_t kMaxModelAspects = 162;    // directions of a twice subdivided icosahedron
+inline constexpr std::size_t kMaxModelName = 32;        // bytes, zero-terminated
+
+static_assert(kMaxModelEdges % 32 == 0, "visibility bits are stored in 32 bit words");
+static_assert(kMaxLineSetEdges <= kMaxModelEdges);
+static_assert(kMaxModelVertices < 0xFFFF && kMaxModelTriangles < 0xFFFF, "indices are 16 bits wide");
+
+// --- Output --------------------------------------------------------------------------------------------------------
+inline constexpr std::size_t kMaxDetections = 16;  // objects in one frame; also the bound of the DDS sequences
+inline constexpr std::size_t kMaxModes = 4;        // poses that the visible evidence of one detection cannot tell apart
+
+}  // namespace wirepose
+
+#endif  // WIREPOSE_CAPACITIES_H_

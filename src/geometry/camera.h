@@ -1,0 +1,45 @@
+// Cameras: the raw rig as calibrated and the rectified pair that the recognizer works in.
+#ifndef WIREPOSE_GEOMETRY_CAMERA_H_
+#define WIREPOSE_GEOMETRY_CAMERA_H_
+
+#include "geometry/se3.h"
+
+namespace wirepose {
+
+// Pinhole with Brown-Conrady distortion, as OpenCV defines it (k1 k2 p1 p2 k3). Lengths in pixels, axes x right,
+// y down, z forward, pixel centres at integer coordinates.
+struct CameraIntrinsics {
+  double fx = 0, fy = 0, cx = 0, cy = 0;
+  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+};
+
+// Raw stereo rig. x_right = T_right_left * x_left, metres.
+struct StereoCalibration {
+  CameraIntrinsics left, right;
+  Pose T_right_left;
+  int width = 0, height = 0;
+};
+
+// Rectified pair: equal pinholes, rows aligned, x_right = x_left - (baseline, 0, 0).
+// A point (x, y, z) [m] appears at u = f x/z + cx, v = f y/z + cy in the left image and at u - f*baseline/z in the
+// right one: its disparity. One principal point for both, so that disparity 0 is infinity.
+struct RectifiedCamera {
+  double f = 0, cx = 0, cy = 0;  // px
+  double baseline = 0;           // m
+  int width = 0, height = 0;
+
+  [[nodiscard]] double DisparityOfDepth(double z) const { return f * baseline / z; }
+  // (u, v, disparity) of a point in front of the camera (z > 0).
+  [[nodiscard]] Vector3d Project(const Vector3d& p) const {
+    return {f * p.x() / p.z() + cx, f * p.y() / p.z() + cy, f * baseline / p.z()};
+  }
+  // The point seen at (u, v) with `disparity` > 0.
+  [[nodiscard]] Vector3d Triangulate(double u, double v, double disparity) const {
+    const double z = f * baseline / disparity;
+    return {(u - cx) * z / f, (v - cy) * z / f, z};
+  }
+};
+
+}  // namespace wirepose
+
+#endif  // WIREPOSE_GEOMETRY_CAMERA_H_

@@ -1,0 +1,38 @@
+// A line model as the recognizer reads it: spans into a model file that somebody else owns.
+#ifndef WIREPOSE_MODEL_MODEL_VIEW_H_
+#define WIREPOSE_MODEL_MODEL_VIEW_H_
+
+#include <span>
+#include <string_view>
+
+#include "geometry/se3.h"
+#include "model/model_format.h"
+
+namespace wirepose {
+
+// Read-only and in place; the bytes it was parsed from must stay unchanged for as long as it is used. A view that
+// ParseModel returned is consistent: every index is in range, every count within capacity, every number finite.
+struct ModelView {
+  std::uint32_t id = 0;
+  std::uint32_t checksum = 0;  // the file's CRC-32C: names the very model in health messages
+  std::string_view name;
+  float diameter_m = 0;
+  Vector3 box_min_m = Vector3::Zero();
+  Vector3 box_max_m = Vector3::Zero();
+  std::span<const ModelVertex> vertices;
+  std::span<const ModelTriangle> triangles;
+  std::span<const ModelFace> faces;
+  std::span<const ModelEdge> edges;  // by falling length
+  std::span<const ModelLineSet> line_sets;
+  std::span<const ModelSetMember> set_members;
+  std::span<const ModelSymmetry> symmetries;  // without the identity
+  std::span<const ModelAspect> aspects;
+
+  [[nodiscard]] Vector3 VertexPosition(std::size_t i) const {
+    return {vertices[i].x, vertices[i].y, vertices[i].z};
+  }
+};
+
+}  // namespace wirepose
+
+#endif  // WIREPOSE_MODEL_MODEL_VIEW_H_

@@ -1,0 +1,22 @@
+// `wirepose`: the host tool. Every subcommand lives in a file of its own and registers itself here.
+#include <cstdio>
+#include <exception>
+
+#include "command.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Wirepose: model-based 3D object recognition from line features"};
+  app.require_subcommand(1);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  } catch (const wirepose::cli::UsageError& e) {
+    std::fprintf(stderr, "wirepose: %s\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "wirepose: %s\n", e.what());
+    return 1;
+  }
+  return 0;
+}
