@@ -22,6 +22,15 @@ inline constexpr std::size_t kMaxRidgePixels = 51200;
 // One connected edge; longer than any straight line in the image.
 inline constexpr std::size_t kMaxChain = 2048;
 
+// Related pairs of image lines. 100 lines with depth have some 4 neighbours at junctions and 15 others within reach.
+inline constexpr std::size_t kMaxImageLinePairs = 6144;
+// Corresponding line sets kept per model, by rank: the paper's "small number".
+inline constexpr std::size_t kMaxCorrespondences = 4096;
+inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose
+// Pose hypotheses kept per model after the coarse score, and after removal of near duplicates.
+inline constexpr std::size_t kMaxHypotheses = 256;
+inline constexpr std::size_t kMaxCandidates = 24;
+
 // --- Models --------------------------------------------------------------------------------------------------------
 inline constexpr std::size_t kMaxModels = 16;          // objects searched for at once (memory budget is stated for 16)
 inline constexpr std::size_t kMaxModelVertices = 512;  // a refrigerator with two doors and handles has 118
