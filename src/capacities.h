@@ -30,6 +30,7 @@ inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding se
 // Pose hypotheses kept per model after the coarse score, and after removal of near duplicates.
 inline constexpr std::size_t kMaxHypotheses = 256;
 inline constexpr std::size_t kMaxCandidates = 24;
+inline constexpr std::size_t kMaxEdgeSamples = 512;  // points on visible edges of one pose; the step widens to fit
 
 // --- Models --------------------------------------------------------------------------------------------------------
 inline constexpr std::size_t kMaxModels = 16;          // objects searched for at once (memory budget is stated for 16)

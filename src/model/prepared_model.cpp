@@ -32,11 +32,29 @@ void MarkRepresentatives(PreparedModel& model) {
   }
 }
 
-bool FacesEye(const ModelFace& face, const Vector3& eye) {
+bool IsTowards(const ModelFace& face, const Vector3& eye) {
   return Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye) > face.offset_m;
 }
 
+// Every vertex lies behind every face.
+bool IsConvex(const ModelView& view) {
+  const float tolerance = 0.002F * view.diameter_m;
+  for (const ModelFace& face : view.faces) {
+    const Vector3 normal(face.normal[0], face.normal[1], face.normal[2]);
+    for (std::size_t v = 0; v < view.vertices.size(); ++v) {
+      if (normal.dot(view.VertexPosition(v)) > face.offset_m + tolerance) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
+
+bool PreparedModel::FacesEye(std::size_t edge, const Vector3& eye) const {
+  const ModelEdge& e = view.edges[edge];
+  // A boundary edge of an open mesh is seen from both sides.
+  return e.face[1] == kNoFace || IsTowards(view.faces[e.face[0]], eye) || IsTowards(view.faces[e.face[1]], eye);
+}
 
 EdgeBits PreparedModel::VisibleEdges(const Vector3& eye) const {
   const Vector3 direction = eye - centre;
@@ -52,10 +70,7 @@ EdgeBits PreparedModel::VisibleEdges(const Vector3& eye) const {
   if (nearest == nullptr) return bits;
   bits = nearest->visible_edges;
   for (std::size_t e = 0; e < edges.size(); ++e) {
-    const ModelEdge& edge = view.edges[e];
-    const bool seen = FacesEye(view.faces[edge.face[0]], eye) ||
-                      (edge.face[1] == kNoFace || FacesEye(view.faces[edge.face[1]], eye));
-    if (!seen) bits[e / 32] &= ~(1U << (e % 32));
+    if (!FacesEye(e, eye)) bits[e / 32] &= ~(1U << (e % 32));
   }
   return bits;
 }
@@ -82,6 +97,7 @@ void PrepareModel(const ModelView& view, PreparedModel& out) {
                       (i & 2U) != 0 ? view.box_max_m.y() : view.box_min_m.y(),
                       (i & 4U) != 0 ? view.box_max_m.z() : view.box_min_m.z()};
   }
+  out.convex = IsConvex(view);
   MarkRepresentatives(out);
 }
 

@@ -29,10 +29,13 @@ struct PreparedModel {
   // Symmetries as poses, the identity first.
   FixedVector<Pose, kMaxModelSymmetries> symmetries;
   std::array<Vector3, 8> corners;  // of the bounding box
+  bool convex = false;             // no face can hide an edge of another one
 
   // Edges that an observer at `eye` (model frame, m) sees: from the model's table of aspects, without the edges whose
   // faces both turn away from this very place. O(aspects + edges).
   [[nodiscard]] EdgeBits VisibleEdges(const Vector3& eye) const;
+  // True when a face of the edge turns towards the eye; it may still be hidden by other faces.
+  [[nodiscard]] bool FacesEye(std::size_t edge, const Vector3& eye) const;
 };
 
 // Fills `out`. O(edges^2 * symmetries).
