@@ -8,7 +8,8 @@
 
 namespace wirepose::tools {
 
-// Metres, model frame. Triangles are counter-clockwise seen from outside once OrientOutward has run.
+// Metres, model frame. Triangles are counter-clockwise seen from outside once OrientOutward has
+// run.
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 3>> triangles;
