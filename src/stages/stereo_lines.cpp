@@ -253,7 +253,7 @@ void MatchLine(const StereoLineParams& params, const StereoInput& in, StereoScra
   if (!ChooseSide(params, bright_is_right ? right : left, bright_is_right ? left : right, match, line.owner)) return;
   Refine(params, in, match, line);
   if (line.disparity_a_px < 1 || line.disparity_b_px < 1) return;
-  const auto point = [&](const Vector2& p, float d) {
+  const auto point = [&](const Vector2& p, float d) -> Vector3 {
     return in.camera.Triangulate(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(d)).cast<float>();
   };
   line.a = point(segment.a, line.disparity_a_px);
