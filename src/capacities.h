@@ -23,7 +23,7 @@ inline constexpr std::size_t kMaxRidgePixels = 51200;
 inline constexpr std::size_t kMaxChain = 2048;
 
 // Related pairs of image lines: 150 lines with depth make 11,000 pairs; only clutter of small tiles has more.
-inline constexpr std::size_t kMaxImageLinePairs = 12288;
+inline constexpr std::size_t kMaxImageLinePairs = 8192;
 // Corresponding line sets kept per model, by rank: the paper's "small number".
 inline constexpr std::size_t kMaxCorrespondences = 4096;
 inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose

@@ -42,7 +42,7 @@ class Matcher {
       for (const ImageLinePair& pair : sets_.OfBase(base)) {
         if (pair.metric && pair.kind != set.kind) continue;
         if (!pair.metric && set.kind != LineSetKind::kIntersecting) continue;
-        MatchPair(set, pair);
+        if (CanRank(pair)) MatchPair(set, pair);
       }
     }
     Promote();
@@ -57,6 +57,14 @@ class Matcher {
 
   [[nodiscard]] bool Fits(float length, float slack, float edge_length, float min_cover) const {
     return length < edge_length * (1 + params_.length_tolerance) + slack && length + slack > min_cover * edge_length;
+  }
+
+  // False when even the best match of this pair would be dropped.
+  [[nodiscard]] bool CanRank(const ImageLinePair& pair) const {
+    CorrespondingPair best;
+    best.rank = pair.quality + 2 * params_.cover_gain + params_.junction_gain +
+                params_.promotion * static_cast<float>(params_.max_promotions);
+    return out_.WouldKeep(best);
   }
 
   void MatchPair(const ModelLineSet& set, const ImageLinePair& pair) {
@@ -85,14 +93,13 @@ class Matcher {
     match.image_pair = static_cast<std::uint16_t>(&pair - sets_.pairs.data());
     match.base_edge = set.base_edge;
     match.other_edge = member.edge;
-    match.rank = base_cover_;
-    if (pair.metric) match.rank += std::min(1.0F, lines_[pair.other].Length() / model_.edges[member.edge].length_m);
+    match.rank = pair.quality + params_.cover_gain * base_cover_ + (pair.metric ? Agreement(pair, member) : -params_.no_depth_loss);
     if (pair.base_end != LineEnd::kNone && member.nearest_end_m < Near()) {
       const Corner corner = SharedCorner(model_.edges[set.base_edge], model_.edges[member.edge], Near());
       if (corner.base != LineEnd::kNone) {
         match.junction = 1;
         match.base_flipped = corner.base == pair.base_end ? 0 : 1;
-        match.rank += 0.5F;
+        match.rank += params_.junction_gain;
         Collect(match);
         return;
       }
@@ -102,6 +109,15 @@ class Matcher {
       match.base_flipped = flipped;
       Collect(match);
     }
+  }
+
+  // Exponent of the Gaussian of V, and the other line's cover.
+  [[nodiscard]] float Agreement(const ImageLinePair& pair, const ModelSetMember& member) const {
+    const float angle = (pair.angle_rad - member.angle_rad) / (0.02F + pair.angle_sigma_rad);
+    const float distance =
+        (pair.distance_m - member.distance_m) / (0.003F + 0.01F * member.distance_m + pair.distance_sigma_m);
+    const float cover = std::min(1.0F, lines_[pair.other].Length() / model_.edges[member.edge].length_m);
+    return params_.cover_gain * cover - 0.5F * (angle * angle + distance * distance);
   }
 
   void Collect(const CorrespondingPair& match) {
@@ -117,7 +133,7 @@ class Matcher {
     for (std::size_t flip = 0; flip < 2; ++flip) {
       int count = 0;
       for (const std::uint32_t word : edges_[flip]) count += std::popcount(word);
-      promotion[flip] = params_.promotion * static_cast<float>(std::min(count, 16));
+      promotion[flip] = params_.promotion * static_cast<float>(std::min(count, params_.max_promotions));
       edges_[flip] = {};
     }
     for (CorrespondingPair& match : matches_) {

@@ -17,7 +17,11 @@ struct CorrespondenceParams {
   float angle_tolerance_rad = 0.06F;
   float min_cover = 0.3F;        // share of the base edge that its image line must cover
   float min_other_cover = 0.2F;  // the same of the other edge
-  float promotion = 0.15F;       // rank gained by each model edge that finds a line under one base assignment
+  float promotion = 0.15F;       // rank gained by each model edge that finds a line under one base assignment ...
+  int max_promotions = 8;        // ... up to this many
+  float cover_gain = 2.0F;       // rank of a line that shows its whole edge
+  float junction_gain = 1.0F;    // rank of an image junction that is the model corner
+  float no_depth_loss = 2.0F;    // rank given up by a pair whose V is not known
 };
 
 // The smallest corresponding line set: an image pair and the model pair that shares its parameter vector.
@@ -27,7 +31,7 @@ struct CorrespondingPair {
   std::uint16_t other_edge = 0;
   std::uint8_t base_flipped = 0;  // 1: the edge runs against its image line
   std::uint8_t junction = 0;      // 1: the image junction is the model corner that both edges share
-  float rank = 0;  // more is better: how much of both edges is covered, lines with depth and junctions count more
+  float rank = 0;  // log-likelihood up to a constant: more is better
 };
 
 struct BetterPair {
@@ -43,7 +47,9 @@ using CorrespondingPairs = KeepBest<CorrespondingPair, kMaxCorrespondences, Bett
 
 // Every image pair whose parameter vector agrees with that of a model pair. Lengths are unreliable: a segment may be
 // any part of its edge that is not too short, but it cannot be longer. Symmetric models are searched from one edge of
-// each symmetry orbit. O(pairs * representative base edges * members).
+// each symmetry orbit. Pairs are ranked by the Gaussian likelihood of V under its own sigma, so that a precise agreement
+// beats a vague one, by length and cover of the lines, and by how many other lines fit the same assignment of the base.
+// O(pairs * representative base edges * members).
 void FindCorrespondences(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                          const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out);
 

@@ -48,6 +48,7 @@ class PairMaker {
   PairMaker(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines)
       : params_(params), lines_(lines) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
+      log_length_[i] = std::log(lines[i].segment.Length());
       if (!lines[i].has_depth) continue;
       direction_sigma_[i] = DirectionSigma(camera, lines[i]);
       depth_sigma_[i] = DepthSigma(camera, lines[i]);
@@ -65,6 +66,7 @@ class PairMaker {
     const float reach = std::min(params_.junction_px, 4 + 0.3F * std::min(base.segment.Length(), other.segment.Length()));
     const bool junction = ends < reach && ImageSine(base.segment, other.segment) > 0.2F;
     if (!junction) pair.base_end = pair.other_end = LineEnd::kNone;
+    pair.quality = log_length_[b] + log_length_[o] + (junction ? params_.junction_quality : 0.0F);
     if (!other.has_depth) return junction;
     pair.metric = true;
     return Measure(b, o, pair);
@@ -85,6 +87,8 @@ class PairMaker {
     pair.kind = pair.angle_rad < params_.parallel_rad + pair.angle_sigma_rad ? LineSetKind::kParallel : LineSetKind::kIntersecting;
     pair.distance_m = DistanceOfLines(base, other, sine);
     pair.distance_sigma_m = std::sqrt(depth_sigma_[b] * depth_sigma_[b] + depth_sigma_[o] * depth_sigma_[o]);
+    // Normalisation of the two Gaussians that V is compared with, relative to a rad of 1 and a distance of 1 cm.
+    pair.quality -= std::log(pair.angle_sigma_rad + 0.02F) + std::log((pair.distance_sigma_m + 0.003F) / 0.01F);
     return true;
   }
 
@@ -97,8 +101,20 @@ class PairMaker {
 
   const LineSetParams& params_;
   const Lines3& lines_;
-  std::array<float, kMaxSegments> direction_sigma_{}, depth_sigma_{};
+  std::array<float, kMaxSegments> direction_sigma_{}, depth_sigma_{}, log_length_{};
 };
+
+// Counting sort of the kept pairs by base line. Within a base they stay in the order of quality.
+void GroupByBase(std::size_t line_count, ImageLineSets& out) {
+  const auto& kept = out.kept.Sorted();
+  out.first.fill(0);
+  for (const ImageLinePair& pair : kept) ++out.first[pair.base + 1U];
+  for (std::size_t b = 0; b < line_count; ++b) out.first[b + 1] = static_cast<std::uint16_t>(out.first[b + 1] + out.first[b]);
+  out.pairs.resize(kept.size());
+  std::array<std::uint16_t, kMaxSegments> next;
+  std::copy(out.first.begin(), out.first.end() - 1, next.begin());
+  for (const ImageLinePair& pair : kept) out.pairs[next[pair.base]++] = pair;
+}
 
 }  // namespace
 
@@ -118,20 +134,19 @@ float DirectionSigma(const RectifiedCamera& camera, const Line3& line) {
 }
 
 void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines, ImageLineSets& out) {
-  out.pairs.clear();
-  out.dropped = 0;
+  out.kept.clear();
   const PairMaker maker(params, camera, lines);
   for (std::size_t b = 0; b < lines.size(); ++b) {
-    out.first[b] = static_cast<std::uint16_t>(out.pairs.size());
     if (!lines[b].has_depth || lines[b].segment.Length() < params.min_depth_length_px) continue;
     for (std::size_t o = 0; o < lines.size(); ++o) {
       ImageLinePair pair;
       // Of two lines with depth the longer one, which comes first, is the base: model sets hold both orders.
       if (o == b || (o < b && lines[o].has_depth) || !maker.Make(b, o, pair)) continue;
-      if (!out.pairs.try_push_back(pair)) ++out.dropped;
+      out.kept.Push(pair);
     }
   }
-  out.first[lines.size()] = static_cast<std::uint16_t>(out.pairs.size());
+  out.dropped = out.kept.dropped();
+  GroupByBase(lines.size(), out);
 }
 
 }  // namespace wirepose

@@ -17,6 +17,7 @@ struct LineSetParams {
   float parallel_rad = 0.18F;   // delta_phi: lines closer in direction than this plus their sigmas are parallel
   float max_reach_m = 2.0F;     // lines farther apart belong to no common object; set to the largest model diameter
   float min_depth_length_px = 12;  // of a base line
+  float junction_quality = 1;      // log quality that a junction adds
 };
 
 // Which ends of two lines meet.
@@ -36,10 +37,19 @@ struct ImageLinePair {
   float distance_m = 0;      // lambda, between the infinite lines
   float distance_sigma_m = 0;
   float farthest_end_m = 0;  // rho or theta
+  float quality = 0;  // log of what the pair tells: long lines, well known V
+};
+
+struct BetterImagePair {
+  bool operator()(const ImageLinePair& p, const ImageLinePair& q) const {
+    if (p.quality != q.quality) return p.quality > q.quality;
+    return p.base != q.base ? p.base < q.base : p.other < q.other;
+  }
 };
 
 // All pairs, grouped by base line: the set of base line b is pairs [first[b], first[b + 1]).
 struct ImageLineSets {
+  KeepBest<ImageLinePair, kMaxImageLinePairs, BetterImagePair> kept;  // work space: unordered
   FixedVector<ImageLinePair, kMaxImageLinePairs> pairs;
   std::array<std::uint16_t, kMaxSegments + 1> first{};
   std::uint32_t dropped = 0;
@@ -51,8 +61,8 @@ struct ImageLineSets {
 static_assert(kMaxImageLinePairs <= 0xFFFF);
 
 // Every line with depth becomes a base line; its members are the lines with depth within reach, parallel or not, and
-// the lines without depth that meet it at a junction. Bases are taken from the longest on, so that overflow drops
-// the sets of the shortest. O(lines^2).
+// the lines without depth that meet it at a junction. When there are too many pairs, those of long, well measured lines
+// are kept. O(lines^2 log pairs).
 void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines, ImageLineSets& out);
 
 // Standard deviation of a line's direction, from the disparity covariance; pi/2 at most.
