@@ -31,12 +31,9 @@ class HypothesisMaker {
  public:
   HypothesisMaker(const HypothesisParams& params, const SceneEdges& scene, const PreparedModel& model,
                   const Lines3& lines, Hypotheses& out)
-      : params_(params), scene_(scene), model_(model), lines_(lines), out_(out),
+      : params_(params), scene_(scene), model_(model), lines_(lines), out_(out), scorer_(params.score, scene, model),
         f_(static_cast<float>(scene.camera.f)), cx_(static_cast<float>(scene.camera.cx)),
-        cy_(static_cast<float>(scene.camera.cy)), fb_(f_ * static_cast<float>(scene.camera.baseline)) {
-    left_gain_ = Gain(scene.left);
-    right_gain_ = Gain(scene.right);
-  }
+        cy_(static_cast<float>(scene.camera.cy)) {}
 
   void Make(const CorrespondingPair& match, const ImageLinePair& pair) {
     base_ = &lines_[pair.base];
@@ -58,16 +55,6 @@ class HypothesisMaker {
   }
 
  private:
-  struct LogGain {
-    float hit, miss;
-  };
-
-  [[nodiscard]] LogGain Gain(const EdgeMap& map) const {
-    const float background = std::clamp(map.background, 0.03F, 0.5F);
-    return {params_.sample_weight * std::log(params_.support_rate / background),
-            params_.sample_weight * std::log((1 - params_.support_rate) / (1 - background))};
-  }
-
   void MakeFromAngle(float c, const ImageLinePair& pair, const CorrespondingPair& match) {
     const Vector3 n = PlaneNormal(scene_.camera, other_->segment);
     const float nd = n.dot(d1_);
@@ -168,27 +155,10 @@ class HypothesisMaker {
     }
   }
 
-  struct Projected {
-    Vector2 a, b;
-    float da, db;  // disparities
-  };
-
-  // False when the edge comes too near to the camera plane.
-  [[nodiscard]] bool Project(const PreparedEdge& edge, Projected& out) const {
-    const Vector3 a = hypothesis_.R * edge.a + hypothesis_.t;
-    const Vector3 b = hypothesis_.R * edge.b + hypothesis_.t;
-    if (a.z() < 0.05F || b.z() < 0.05F) return false;
-    out.a = {f_ * a.x() / a.z() + cx_, f_ * a.y() / a.z() + cy_};
-    out.b = {f_ * b.x() / b.z() + cx_, f_ * b.y() / b.z() + cy_};
-    out.da = fb_ / a.z();
-    out.db = fb_ / b.z();
-    return true;
-  }
-
   // The segment lies on the projected edge and within its ends.
   [[nodiscard]] bool Covers(const PreparedEdge& edge, const Segment2& segment) const {
-    Projected p;
-    if (!Project(edge, p)) return false;
+    PoseScorer::Projected p;
+    if (!scorer_.Project(edge, hypothesis_.R, hypothesis_.t, p)) return false;
     const float length = (p.b - p.a).norm();
     if (length < 3) return false;
     const Vector2 d = (p.b - p.a) / length;
@@ -207,37 +177,7 @@ class HypothesisMaker {
     if (!Covers(*base_edge_, base_->segment) || !Covers(*other_edge_, other_->segment)) return;
     const EdgeBits visible = model_.VisibleEdges(-(hypothesis_.R.transpose() * hypothesis_.t));
     if (!HasEdge(visible, hypothesis_.base_edge) || !HasEdge(visible, hypothesis_.other_edge)) return;
-    float left = 0, right = 0;
-    int inside = 0, total = 0;
-    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
-      Projected p;
-      if (!HasEdge(visible, e) || !Project(model_.edges[e], p)) continue;
-      const int n = std::clamp(static_cast<int>((p.b - p.a).norm() / params_.sample_step_px), 1, 16);
-      total += n;
-      inside += AddSupport(scene_.left, left_gain_, p.a, p.b, n, left);
-      const Vector2 ra(p.a.x() - p.da, p.a.y()), rb(p.b.x() - p.db, p.b.y());
-      AddSupport(scene_.right, right_gain_, ra, rb, n, right);
-    }
-    if (static_cast<float>(inside) < params_.min_inside * static_cast<float>(total)) return;
-    hypothesis_.score = left + right;
-    out_.Push(hypothesis_);
-  }
-
-  // Samples one projected edge; returns how many samples lie in the image.
-  static int AddSupport(const EdgeMap& map, const LogGain& gain, const Vector2& a, const Vector2& b, int n, float& sum) {
-    const Vector2 d = b - a;
-    const int direction = EdgeMap::Direction(d.x(), d.y());
-    const float step = 1 / static_cast<float>(n);
-    int inside = 0;
-    for (int k = 0; k < n; ++k) {
-      const float s = (static_cast<float>(k) + 0.5F) * step;
-      const float x = a.x() + s * d.x();
-      const float y = a.y() + s * d.y();
-      if (!map.Contains(x, y)) continue;
-      ++inside;
-      sum += map.HasEdge(x, y, direction) ? gain.hit : gain.miss;
-    }
-    return inside;
+    if (scorer_.Score(hypothesis_.R, hypothesis_.t, visible, hypothesis_.score)) out_.Push(hypothesis_);
   }
 
   const HypothesisParams& params_;
@@ -245,8 +185,8 @@ class HypothesisMaker {
   const PreparedModel& model_;
   const Lines3& lines_;
   Hypotheses& out_;
-  float f_, cx_, cy_, fb_;
-  LogGain left_gain_{}, right_gain_{};
+  PoseScorer scorer_;
+  float f_, cx_, cy_;
   // Of the pair at hand.
   const Line3* base_ = nullptr;
   const Line3* other_ = nullptr;

@@ -5,7 +5,7 @@
 #include "base/keep_best.h"
 #include "model/prepared_model.h"
 #include "stages/correspondences.h"
-#include "stages/edge_map.h"
+#include "stages/pose_score.h"
 
 namespace wirepose {
 
@@ -15,10 +15,7 @@ struct HypothesisParams {
   float direction_tolerance_rad = 0.15F;  // between the solved and the measured direction of the other line
   float length_angle_tolerance = 0.2F;    // cosine error up to which a direction solved from a length is believed
   float min_depth_m = 0.15F;       // of the object's centre
-  float min_inside = 0.4F;         // share of the visible edge length that lies in the image
-  float sample_step_px = 6;
-  float support_rate = 0.75F;      // share of a true object's visible edge samples that show an edge
-  float sample_weight = 0.5F;      // neighbouring samples are not independent
+  PoseScoreParams score;
 };
 
 // A pose in the rectified left frame with its coarse score.
@@ -41,13 +38,6 @@ struct BetterHypothesis {
   }
 };
 using Hypotheses = KeepBest<Hypothesis, kMaxHypotheses, BetterHypothesis>;
-
-// What poses are scored against.
-struct SceneEdges {
-  const RectifiedCamera& camera;
-  const EdgeMap& left;
-  const EdgeMap& right;
-};
 
 // All rigid motions that a corresponding pair allows. Two lines that are not parallel give the rotation in closed form:
 // the other line's direction lies in the plane through camera centre and segment and at the model's angle to the base

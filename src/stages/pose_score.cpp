@@ -1,0 +1,73 @@
+#include "stages/pose_score.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wirepose {
+
+PoseScorer::PoseScorer(const PoseScoreParams& params, const SceneEdges& scene, const PreparedModel& model)
+    : params_(params),
+      scene_(scene),
+      model_(model),
+      f_(static_cast<float>(scene.camera.f)),
+      cx_(static_cast<float>(scene.camera.cx)),
+      cy_(static_cast<float>(scene.camera.cy)),
+      fb_(static_cast<float>(scene.camera.f * scene.camera.baseline)) {
+  left_gain_ = Gain(scene.left);
+  right_gain_ = Gain(scene.right);
+}
+
+PoseScorer::LogGain PoseScorer::Gain(const EdgeMap& map) const {
+  const float background = std::clamp(map.background, 0.03F, 0.5F);
+  return {params_.sample_weight * std::log(params_.support_rate / background),
+          params_.sample_weight * std::log((1 - params_.support_rate) / (1 - background))};
+}
+
+bool PoseScorer::Project(const PreparedEdge& edge, const Matrix3& R, const Vector3& t, Projected& out) const {
+  const Vector3 a = R * edge.a + t;
+  const Vector3 b = R * edge.b + t;
+  if (a.z() < 0.05F || b.z() < 0.05F) return false;
+  const float ia = 1 / a.z(), ib = 1 / b.z();
+  out.a = {f_ * a.x() * ia + cx_, f_ * a.y() * ia + cy_};
+  out.b = {f_ * b.x() * ib + cx_, f_ * b.y() * ib + cy_};
+  out.disparity_a = fb_ * ia;
+  out.disparity_b = fb_ * ib;
+  return true;
+}
+
+bool PoseScorer::Score(const Matrix3& R, const Vector3& t, const EdgeBits& visible, float& score) const {
+  Support left, right;
+  int total = 0, edges = 0;
+  for (std::size_t e = 0; e < model_.edges.size(); ++e) {
+    Projected p;
+    if (!HasEdge(visible, e) || !Project(model_.edges[e], R, t, p)) continue;
+    const int n = std::clamp(static_cast<int>((p.b - p.a).norm() / params_.sample_step_px), 1, 16);
+    total += n;
+    AddSupport(scene_.left, left_gain_, p.a, p.b, n, left);
+    AddSupport(scene_.right, right_gain_, {p.a.x() - p.disparity_a, p.a.y()}, {p.b.x() - p.disparity_b, p.b.y()}, n, right);
+    if (++edges == params_.first_edges &&
+        static_cast<float>(left.hits) < params_.min_first_support * static_cast<float>(left.inside)) {
+      return false;
+    }
+  }
+  score = left.sum + right.sum;
+  return static_cast<float>(left.inside) >= params_.min_inside * static_cast<float>(total);
+}
+
+void PoseScorer::AddSupport(const EdgeMap& map, const LogGain& gain, const Vector2& a, const Vector2& b, int n, Support& out) {
+  const Vector2 d = b - a;
+  const int direction = EdgeMap::Direction(d.x(), d.y());
+  const float step = 1 / static_cast<float>(n);
+  for (int k = 0; k < n; ++k) {
+    const float s = (static_cast<float>(k) + 0.5F) * step;
+    const float x = a.x() + s * d.x();
+    const float y = a.y() + s * d.y();
+    if (!map.Contains(x, y)) continue;
+    const bool hit = map.HasEdge(x, y, direction);
+    ++out.inside;
+    out.hits += hit ? 1 : 0;
+    out.sum += hit ? gain.hit : gain.miss;
+  }
+}
+
+}  // namespace wirepose

@@ -1,0 +1,229 @@
+#include "stages/promotion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace wirepose {
+namespace {
+
+// Poses that are promoted; the rest of the hypotheses is too weak to matter.
+constexpr std::size_t kMaxPromoted = 2 * kMaxCandidates;
+
+class Promoter {
+ public:
+  Promoter(const PromotionParams& params, const PoseScorer& scorer, const RectifiedCamera& camera,
+           const PreparedModel& model, const Lines3& lines)
+      : params_(params), scorer_(scorer), camera_(camera), model_(model), lines_(lines) {}
+
+  // False when the aligned pose fails.
+  bool Promote(const Hypothesis& hypothesis, CorrespondingSet& set) {
+    set = {};
+    set.R = hypothesis.R;
+    set.t = hypothesis.t;
+    for (int round = 0; round < 3; ++round) {
+      Gather(set, round == 0 ? params_.max_offset_px : 0.5F * params_.max_offset_px);
+      if (round < 2 && !Align(set)) return false;
+    }
+    const EdgeBits visible = Visible(set);
+    if (!scorer_.Score(set.R, set.t, visible, set.score)) return false;
+    set.rank = set.score + params_.line_gain * static_cast<float>(set.line_count) +
+               params_.face_gain * static_cast<float>(set.face_count);
+    return true;
+  }
+
+ private:
+  struct Found {
+    SetMember member;
+    float length_px;
+  };
+
+  [[nodiscard]] EdgeBits Visible(const CorrespondingSet& set) const {
+    return model_.VisibleEdges(-(set.R.transpose() * set.t));
+  }
+
+  // All lines along visible edges; the longest line of each edge counts it.
+  void Gather(CorrespondingSet& set, float max_offset) {
+    found_.clear();
+    set.members.clear();
+    set.line_count = set.face_count = 0;
+    const EdgeBits visible = Visible(set);
+    std::array<bool, kMaxModelFaces> covered{};
+    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
+      PoseScorer::Projected p;
+      if (!HasEdge(visible, e) || !scorer_.Project(model_.edges[e], set.R, set.t, p)) continue;
+      if (!GatherEdge(e, p, max_offset)) continue;
+      ++set.line_count;
+      for (const std::uint16_t face : model_.view.edges[e].face) {
+        if (face == kNoFace || covered[face]) continue;
+        covered[face] = true;
+        if (FacesCamera(set, face)) ++set.face_count;
+      }
+    }
+    std::sort(found_.begin(), found_.end(), [](const Found& p, const Found& q) {
+      return p.length_px != q.length_px ? p.length_px > q.length_px : p.member.edge < q.member.edge;
+    });
+    for (const Found& f : found_) {
+      if (!set.members.try_push_back(f.member)) break;
+    }
+  }
+
+  bool GatherEdge(std::size_t e, const PoseScorer::Projected& p, float max_offset) {
+    const Vector2 d = p.b - p.a;
+    const float length = d.norm();
+    if (length < 6) return false;
+    const Vector2 u = d / length;
+    const Line3* best = nullptr;
+    float best_overlap = 4;
+    for (const Line3& line : lines_) {
+      const Segment2& s = line.segment;
+      const float across_a = std::abs((s.a - p.a).x() * u.y() - (s.a - p.a).y() * u.x());
+      if (across_a > max_offset) continue;
+      const float across_b = std::abs((s.b - p.a).x() * u.y() - (s.b - p.a).y() * u.x());
+      if (across_b > max_offset) continue;
+      const float s0 = (s.a - p.a).dot(u), s1 = (s.b - p.a).dot(u);
+      if (std::abs(s1 - s0) < params_.min_cosine * s.Length()) continue;
+      const float overlap = std::min(length, std::max(s0, s1)) - std::max(0.0F, std::min(s0, s1));
+      if (overlap < 0.6F * std::abs(s1 - s0)) continue;
+      if (line.has_depth && !DepthAgrees(line, p, s0 / length, s1 / length)) continue;
+      const float merit = overlap - 2 * (across_a + across_b);
+      if (merit <= best_overlap) continue;
+      best_overlap = merit;
+      best = &line;
+    }
+    if (best == nullptr) return false;
+    const Found found{{best->id, static_cast<std::uint16_t>(e)}, best->segment.Length()};
+    if (!found_.try_push_back(found)) return true;
+    return true;
+  }
+
+  // The line's disparity at its middle is within five sigma (and 4 px) of the edge's there.
+  [[nodiscard]] bool DepthAgrees(const Line3& line, const PoseScorer::Projected& p, float s0, float s1) const {
+    const float middle = 0.5F * (s0 + s1);
+    const float expected = p.disparity_a + middle * (p.disparity_b - p.disparity_a);
+    const float measured = 0.5F * (line.disparity_a_px + line.disparity_b_px);
+    const float sigma = std::sqrt(0.25F * (line.var_a + line.var_b + 2 * line.cov_ab));
+    return std::abs(expected - measured) < 4 + 5 * sigma;
+  }
+
+  [[nodiscard]] bool FacesCamera(const CorrespondingSet& set, std::uint16_t f) const {
+    const ModelFace& face = model_.view.faces[f];
+    const Vector3 eye = -(set.R.transpose() * set.t);
+    return Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye) > face.offset_m;
+  }
+
+  // One Gauss-Newton step on all members: at both ends of each line the offset from the projected edge and, with depth,
+  // the difference of disparity. A weak prior keeps undetermined motions in place.
+  bool Align(CorrespondingSet& set) const {
+    Matrix6d H = Matrix6d::Zero();
+    Vector6d g = Vector6d::Zero();
+    // 3 degrees and 3 % of the distance.
+    const double distance = static_cast<double>(set.t.norm());
+    for (int i = 0; i < 6; ++i) H(i, i) = i < 3 ? 1 / (0.05 * 0.05) : 1 / (0.03 * 0.03 * distance * distance);
+    for (const Found& f : found_) AddLine(set, lines_[f.member.line], model_.edges[f.member.edge], H, g);
+    const Eigen::LDLT<Matrix6d> ldlt(H);
+    if (ldlt.info() != Eigen::Success) return false;
+    const Vector6d twist = ldlt.solve(g);
+    if (!twist.allFinite()) return false;
+    const Pose T = PerturbLeft({set.R.cast<double>(), set.t.cast<double>()}, twist, set.t.cast<double>());
+    set.R = T.R.cast<float>();
+    set.t = T.t.cast<float>();
+    return set.t.z() > 0.05F;
+  }
+
+  void AddLine(const CorrespondingSet& set, const Line3& line, const PreparedEdge& edge, Matrix6d& H, Vector6d& g) const {
+    PoseScorer::Projected p;
+    if (!scorer_.Project(edge, set.R, set.t, p)) return;
+    const Vector2 d = p.b - p.a;
+    const float length_squared = std::max(d.squaredNorm(), 1.0F);
+    const Vector2 n = Vector2(-d.y(), d.x()) / std::sqrt(length_squared);
+    const float za = static_cast<float>(camera_.f * camera_.baseline) / p.disparity_a;
+    const float zb = static_cast<float>(camera_.f * camera_.baseline) / p.disparity_b;
+    for (int end = 0; end < 2; ++end) {
+      const Vector2 q = end == 0 ? line.segment.a : line.segment.b;
+      const float s = std::clamp((q - p.a).dot(d) / length_squared, -0.2F, 1.2F);
+      const float w = s * za / (s * za + (1 - s) * zb);  // the same point along the edge in space
+      const Vector3d x = (set.R * (edge.a + w * (edge.b - edge.a)) + set.t).cast<double>();
+      if (x.z() < 0.05) continue;
+      const double iz = 1 / x.z();
+      const auto nx = static_cast<double>(n.x()), ny = static_cast<double>(n.y());
+      const Vector3d gradient(nx * camera_.f * iz, ny * camera_.f * iz,
+                              -(nx * camera_.f * x.x() + ny * camera_.f * x.y()) * iz * iz);
+      const auto offset = static_cast<double>((q - (p.a + s * d)).dot(n));
+      AddRow(x - set.t.cast<double>(), gradient, offset, static_cast<double>(params_.sigma_px), H, g);
+      if (!line.has_depth) continue;
+      const auto measured = static_cast<double>(end == 0 ? line.disparity_a_px : line.disparity_b_px);
+      const auto variance = static_cast<double>(end == 0 ? line.var_a : line.var_b);
+      const Vector3d by_depth(0, 0, -camera_.f * camera_.baseline * iz * iz);
+      const auto floor = static_cast<double>(params_.sigma_disparity_px);
+      AddRow(x - set.t.cast<double>(), by_depth, measured - camera_.DisparityOfDepth(x.z()), std::sqrt(variance + floor * floor), H, g);
+    }
+  }
+
+  // `p`: the point relative to the model origin, camera axes; `gradient`: of the measurement by the point.
+  static void AddRow(const Vector3d& p, const Vector3d& gradient, double residual, double sigma, Matrix6d& H, Vector6d& g) {
+    Vector6d J;
+    J.head<3>() = p.cross(gradient);
+    J.tail<3>() = gradient;
+    const double r = residual / (3 * sigma);
+    const double w = 1 / ((1 + r * r) * sigma * sigma);  // Cauchy
+    H += w * J * J.transpose();
+    g += w * residual * J;
+  }
+
+  const PromotionParams& params_;
+  const PoseScorer& scorer_;
+  const RectifiedCamera& camera_;
+  const PreparedModel& model_;
+  const Lines3& lines_;
+  FixedVector<Found, kMaxModelEdges> found_;
+};
+
+struct BetterSet {
+  bool operator()(const CorrespondingSet& p, const CorrespondingSet& q) const {
+    return p.rank != q.rank ? p.rank > q.rank : p.t.x() < q.t.x();
+  }
+};
+
+}  // namespace
+
+bool IsSamePose(const PreparedModel& model, const Matrix3& R1, const Vector3& t1, const Matrix3& R2, const Vector3& t2,
+                float tolerance_m) {
+  const float limit = tolerance_m * tolerance_m;
+  for (const Pose& symmetry : model.symmetries) {
+    const Matrix3 S = symmetry.R.cast<float>();
+    const Vector3 s = symmetry.t.cast<float>();
+    bool same = true;
+    for (const Vector3& corner : model.corners) {
+      same = same && ((R1 * corner + t1) - (R2 * (S * corner + s) + t2)).squaredNorm() < limit;
+    }
+    if (same) return true;
+  }
+  return false;
+}
+
+void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const RectifiedCamera& camera,
+                 const PreparedModel& model, const Lines3& lines, std::span<const Hypothesis> hypotheses,
+                 CorrespondingSets& out) {
+  out.clear();
+  const float tolerance = params.duplicate_share * model.view.diameter_m;
+  FixedVector<const Hypothesis*, kMaxPromoted> distinct;
+  KeepBest<CorrespondingSet, kMaxPromoted, BetterSet> best;
+  Promoter promoter(params, scorer, camera, model, lines);
+  for (const Hypothesis& h : hypotheses) {
+    bool duplicate = false;
+    for (const Hypothesis* k : distinct) duplicate = duplicate || IsSamePose(model, h.R, h.t, k->R, k->t, tolerance);
+    if (duplicate) continue;
+    if (!distinct.try_push_back(&h)) break;
+    CorrespondingSet set;
+    if (promoter.Promote(h, set)) best.Push(set);
+  }
+  // Aligned poses meet again: keep the best of each.
+  for (const CorrespondingSet& set : best.Sorted()) {
+    bool duplicate = false;
+    for (const CorrespondingSet& k : out) duplicate = duplicate || IsSamePose(model, set.R, set.t, k.R, k.t, tolerance);
+    if (!duplicate && !out.try_push_back(set)) break;
+  }
+}
+
+}  // namespace wirepose

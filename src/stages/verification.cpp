@@ -1,0 +1,290 @@
+#include "stages/verification.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace wirepose {
+namespace {
+
+constexpr int kPatchX = 3, kPatchY = 2;  // half sizes of a compared patch
+constexpr int kPatchPixels = (2 * kPatchX + 1) * (2 * kPatchY + 1);
+
+// Disparity of a plane: affine in the image, d = a u + b v + c.
+struct PlaneDisparity {
+  float a = 0, b = 0, c = 0;
+  [[nodiscard]] float At(float u, float v) const { return a * u + b * v + c; }
+};
+
+PlaneDisparity DisparityOfFace(const RectifiedCamera& camera, const ModelFace& face, const Pose& T) {
+  const Vector3d normal = T.R * Vector3d(static_cast<double>(face.normal[0]), static_cast<double>(face.normal[1]),
+                                         static_cast<double>(face.normal[2]));
+  const double h = static_cast<double>(face.offset_m) + normal.dot(T.t);  // normal . x = h in the camera frame
+  const double s = camera.baseline / h;
+  return {static_cast<float>(s * normal.x()), static_cast<float>(s * normal.y()),
+          static_cast<float>(s * (camera.f * normal.z() - normal.x() * camera.cx - normal.y() * camera.cy))};
+}
+
+// Mean absolute difference between the left patch at (u, v) and the right one where the plane, shifted by `shift` px of
+// disparity, predicts it; negative when the patch leaves an image.
+float PatchCost(const VerifyInput& in, const PlaneDisparity& plane, int u, int v, float shift) {
+  const float d0 = plane.At(static_cast<float>(u), static_cast<float>(v)) + shift;
+  const float spread = std::abs(plane.a) * kPatchX + std::abs(plane.b) * kPatchY + 1;
+  const float right = static_cast<float>(u) - d0;
+  if (u < kPatchX || v < kPatchY || u + kPatchX >= in.camera.width || v + kPatchY >= in.camera.height) return -1;
+  if (right - kPatchX - spread < 0 || right + kPatchX + spread >= static_cast<float>(in.camera.width - 1)) return -1;
+  int sum = 0;
+  for (int dy = -kPatchY; dy <= kPatchY; ++dy) {
+    const std::uint8_t* left_row = in.left.data() + (v + dy) * kMaxImageWidth + u;
+    const std::uint8_t* right_row = in.right.data() + (v + dy) * kMaxImageWidth;
+    float x = right - plane.b * static_cast<float>(dy) + 0.5F - (1 - plane.a) * kPatchX;
+    for (int dx = -kPatchX; dx <= kPatchX; ++dx, x += 1 - plane.a) {
+      sum += std::abs(int{left_row[dx]} - int{right_row[static_cast<int>(x)]});
+    }
+  }
+  return static_cast<float>(sum) / kPatchPixels;
+}
+
+// Costs of one surface at several shifts of disparity, summed over patches.
+struct ShiftProfile {
+  static constexpr std::array<float, 11> kShifts = {-9, -6, -4, -2.5F, -1, 0, 1, 2.5F, 4, 6, 9};
+  static constexpr std::size_t kNear = 4;  // first of the three shifts that count as the plane itself
+  std::array<float, kShifts.size()> cost{};
+  int patches = 0;
+
+  bool Add(const VerifyInput& in, const PlaneDisparity& plane, int u, int v) {
+    std::array<float, kShifts.size()> here;
+    for (std::size_t i = 0; i < kShifts.size(); ++i) {
+      here[i] = PatchCost(in, plane, u, v, kShifts[i]);
+      if (here[i] < 0) return false;
+    }
+    for (std::size_t i = 0; i < kShifts.size(); ++i) cost[i] += here[i];
+    ++patches;
+    return true;
+  }
+
+  // Log-likelihood ratio per surface: how much better the plane explains the right image than other depths do. The
+  // scale is set by the cost itself, which is what noise and sub-pixel shifts leave.
+  [[nodiscard]] float LogRatio() const {
+    if (patches < 4) return 0;
+    const float own = std::min({cost[kNear], cost[kNear + 1], cost[kNear + 2]});
+    float other = 1e9F;
+    for (std::size_t i = 0; i < cost.size(); ++i) {
+      if (i < kNear || i > kNear + 2) other = std::min(other, cost[i]);
+    }
+    const auto n = static_cast<float>(patches);
+    const float contrast = (other - own) / (own + 2 * n);
+    return std::clamp(contrast, -0.5F, 0.5F) * std::sqrt(n);
+  }
+};
+
+class EvidenceGatherer {
+ public:
+  EvidenceGatherer(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model, const Pose& T,
+                   VerifyScratch& scratch, Evidence& out)
+      : params_(params), in_(input), model_(model), T_(T), scratch_(scratch), out_(out) {
+    R_ = T.R.cast<float>();
+    t_ = T.t.cast<float>();
+    eye_ = -(R_.transpose() * t_);
+  }
+
+  void Run() {
+    out_ = {};
+    SampleVisibleEdges({}, in_.camera, model_, T_, scratch_.front, scratch_.samples);
+    FindFrontTriangles(model_.view, eye_, scratch_.front);
+    Edges();
+    for (std::size_t f = 0; f < model_.view.faces.size(); ++f) Face(f);
+    Silhouette();
+  }
+
+ private:
+  void Edges() {
+    std::array<float, kMaxModelEdges> length{}, supported{};
+    float inside = 0, total = 0, support = 0, sum = 0;
+    const float background_l = std::clamp(in_.left_edges.background, 0.03F, 0.5F);
+    const float background_r = std::clamp(in_.right_edges.background, 0.03F, 0.5F);
+    for (const EdgeSample& s : scratch_.samples) {
+      total += s.weight_px;
+      const float weight = params_.sample_weight * s.weight_px / 6;
+      bool left = false;
+      if (in_.left_edges.Contains(s.left.x(), s.left.y())) {
+        inside += s.weight_px;
+        left = in_.left_edges.HasEdge(s.left.x(), s.left.y(), EdgeMap::Direction(s.tangent.x(), s.tangent.y()));
+        sum += weight * Gain(left, background_l);
+        length[s.edge] += s.weight_px;
+        if (left) {
+          support += s.weight_px;
+          supported[s.edge] += s.weight_px;
+        }
+      }
+      const float x = s.left.x() - s.disparity;
+      if (!in_.right_edges.Contains(x, s.left.y())) continue;
+      const bool right = in_.right_edges.HasEdge(x, s.left.y(), EdgeMap::Direction(s.tangent_right.x(), s.tangent_right.y()));
+      sum += weight * Gain(right, background_r);
+    }
+    out_.edges = sum;
+    out_.support = inside > 0 ? support / inside : 0;
+    out_.inside = total > 0 ? inside / total : 0;
+    out_.visible_px = inside;
+    CountSupported(length, supported);
+  }
+
+  [[nodiscard]] float Gain(bool hit, float background) const {
+    return hit ? std::log(params_.support_rate / background) : std::log((1 - params_.support_rate) / (1 - background));
+  }
+
+  void CountSupported(const std::array<float, kMaxModelEdges>& length, const std::array<float, kMaxModelEdges>& supported) {
+    std::array<std::uint32_t, kMaxModelFaces / 32> faces{};
+    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
+      if (length[e] <= 0 || supported[e] < 0.5F * length[e]) continue;
+      ++out_.supported_edges;
+      for (const std::uint16_t face : model_.view.edges[e].face) {
+        if (face == kNoFace || !Faces(face)) continue;
+        std::uint32_t& word = faces[face / 32];
+        const std::uint32_t bit = 1U << (face % 32);
+        if ((word & bit) == 0) ++out_.supported_faces;
+        word |= bit;
+      }
+    }
+  }
+
+  [[nodiscard]] bool Faces(std::size_t f) const {
+    const ModelFace& face = model_.view.faces[f];
+    return Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye_) > face.offset_m;
+  }
+
+  [[nodiscard]] Vector3 Project(std::uint16_t vertex) const {
+    const Vector3 p = R_ * model_.view.VertexPosition(vertex) + t_;
+    const float z = std::max(p.z(), 0.05F);
+    const auto f = static_cast<float>(in_.camera.f);
+    return {f * p.x() / z + static_cast<float>(in_.camera.cx), f * p.y() / z + static_cast<float>(in_.camera.cy), p.z()};
+  }
+
+  // Patches on a grid over the face's triangles, where the object does not hide itself.
+  void Face(std::size_t f) {
+    const ModelFace& face = model_.view.faces[f];
+    if (!Faces(f)) return;
+    float area = 0;
+    for (int i = 0; i < face.triangle_count; ++i) area += TriangleArea(face.first_triangle + i);
+    if (area < params_.min_face_px2) return;
+    const float grid = std::max(static_cast<float>(params_.face_grid_px),
+                                std::sqrt(area / static_cast<float>(params_.max_face_patches)));
+    const PlaneDisparity plane = DisparityOfFace(in_.camera, face, T_);
+    ShiftProfile profile;
+    for (int i = 0; i < face.triangle_count; ++i) AddTriangle(face.first_triangle + i, f, plane, static_cast<int>(grid), profile);
+    out_.faces += profile.LogRatio();
+  }
+
+  [[nodiscard]] float TriangleArea(int i) const {
+    const ModelTriangle& t = model_.view.triangles[static_cast<std::size_t>(i)];
+    const Vector3 a = Project(t.vertex[0]), b = Project(t.vertex[1]), c = Project(t.vertex[2]);
+    if (a.z() < 0.05F || b.z() < 0.05F || c.z() < 0.05F) return 0;
+    return 0.5F * std::abs((b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()));
+  }
+
+  void AddTriangle(int i, std::size_t f, const PlaneDisparity& plane, int grid, ShiftProfile& profile) {
+    const ModelTriangle& t = model_.view.triangles[static_cast<std::size_t>(i)];
+    const Vector3 a = Project(t.vertex[0]), b = Project(t.vertex[1]), c = Project(t.vertex[2]);
+    const float det = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+    if (std::abs(det) < 1) return;
+    const auto low = [&](float p, float q, float r) { return std::max(0, static_cast<int>(std::min({p, q, r}))); };
+    const auto high = [&](float p, float q, float r, int end) { return std::min(static_cast<float>(end - 1), std::max({p, q, r})); };
+    const int x0 = (low(a.x(), b.x(), c.x()) / grid + 1) * grid, y0 = (low(a.y(), b.y(), c.y()) / grid + 1) * grid;
+    const int x1 = static_cast<int>(high(a.x(), b.x(), c.x(), in_.camera.width));
+    const int y1 = static_cast<int>(high(a.y(), b.y(), c.y(), in_.camera.height));
+    for (int y = y0; y <= y1; y += grid) {
+      for (int x = x0; x <= x1; x += grid) {
+        const float px = static_cast<float>(x) - a.x(), py = static_cast<float>(y) - a.y();
+        const float s = (px * (c.y() - a.y()) - py * (c.x() - a.x())) / det;
+        const float r = (py * (b.x() - a.x()) - px * (b.y() - a.y())) / det;
+        if (s < 0 || r < 0 || s + r > 1) continue;
+        if (!model_.convex && Hides(x, y, plane, f)) continue;
+        if (profile.patches < 2 * params_.max_face_patches) profile.Add(in_, plane, x, y);
+      }
+    }
+  }
+
+  // True when another face of the object hides the face's point at this pixel.
+  [[nodiscard]] bool Hides(int x, int y, const PlaneDisparity& plane, std::size_t f) const {
+    const float d = plane.At(static_cast<float>(x), static_cast<float>(y));
+    if (d < 0.5F) return true;
+    const Vector3 p = in_.camera.Triangulate(x, y, static_cast<double>(d)).cast<float>();
+    const Vector3 point = R_.transpose() * (p - t_);
+    return IsHidden(model_.view, scratch_.front, eye_, point, static_cast<std::uint16_t>(f), static_cast<std::uint16_t>(f));
+  }
+
+  // Beside each outline edge: does the face's plane go on (against the object) or is the scene behind it farther (for)?
+  void Silhouette() {
+    std::size_t begin = 0;
+    const auto& samples = scratch_.samples;
+    while (begin < samples.size()) {
+      std::size_t end = begin;
+      while (end < samples.size() && samples[end].edge == samples[begin].edge) ++end;
+      OutlineEdge(begin, end);
+      begin = end;
+    }
+  }
+
+  void OutlineEdge(std::size_t begin, std::size_t end) {
+    const ModelEdge& edge = model_.view.edges[scratch_.samples[begin].edge];
+    if (edge.face[1] == kNoFace || Faces(edge.face[0]) == Faces(edge.face[1])) return;  // not on the outline
+    const std::uint16_t f = Faces(edge.face[0]) ? edge.face[0] : edge.face[1];
+    const ModelFace& face = model_.view.faces[f];
+    const PlaneDisparity plane = DisparityOfFace(in_.camera, face, T_);
+    // Outside is where the face is not: away from its middle.
+    const Vector3 middle = Project(model_.view.triangles[face.first_triangle].vertex[0]) +
+                           Project(model_.view.triangles[face.first_triangle].vertex[1]) +
+                           Project(model_.view.triangles[face.first_triangle].vertex[2]);
+    float own = 0, farther = 0;
+    int n = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const EdgeSample& s = scratch_.samples[i];
+      Vector2 normal(-s.tangent.y(), s.tangent.x());
+      if (normal.dot(s.left - middle.head<2>() / 3) < 0) normal = -normal;
+      const Vector2 p = s.left + params_.silhouette_offset_px * normal;
+      AddBackground(plane, static_cast<int>(p.x() + 0.5F), static_cast<int>(p.y() + 0.5F), own, farther, n);
+    }
+    if (n < 3) return;
+    const float contrast = (own - farther) / (std::min(own, farther) + 2 * static_cast<float>(n));
+    out_.silhouette += std::clamp(contrast, -0.5F, 0.5F) * std::sqrt(static_cast<float>(n));
+  }
+
+  // Cost of the plane continued and the best cost at depths behind it.
+  void AddBackground(const PlaneDisparity& plane, int u, int v, float& own, float& farther, int& n) {
+    if (u < 0 || v < 0 || u >= in_.camera.width || v >= in_.camera.height) return;
+    float here = 1e9F;
+    for (const float shift : {-1.0F, 0.0F, 1.0F}) {
+      const float c = PatchCost(in_, plane, u, v, shift);
+      if (c < 0) return;
+      here = std::min(here, c);
+    }
+    const PlaneDisparity frontal{0, 0, plane.At(static_cast<float>(u), static_cast<float>(v))};
+    float behind = 1e9F;
+    for (float share = 0.93F; share > 0.3F; share *= 0.93F) {
+      const float c = PatchCost(in_, frontal, u, v, -(1 - share) * frontal.c - 1.5F);
+      if (c >= 0) behind = std::min(behind, c);
+    }
+    if (behind > 1e8F) return;
+    own += here;
+    farther += behind;
+    ++n;
+  }
+
+  const VerifyParams& params_;
+  const VerifyInput& in_;
+  const PreparedModel& model_;
+  const Pose& T_;
+  VerifyScratch& scratch_;
+  Evidence& out_;
+  Matrix3 R_;
+  Vector3 t_, eye_;
+};
+
+}  // namespace
+
+void GatherEvidence(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model,
+                    const Pose& T_camera_model, VerifyScratch& scratch, Evidence& out) {
+  EvidenceGatherer(params, input, model, T_camera_model, scratch, out).Run();
+}
+
+}  // namespace wirepose

@@ -1,0 +1,54 @@
+// Stage 6: is the object really there? Evidence of edges, faces and silhouette in both images.
+#ifndef WIREPOSE_STAGES_VERIFICATION_H_
+#define WIREPOSE_STAGES_VERIFICATION_H_
+
+#include "stages/edge_map.h"
+#include "stages/normalize.h"
+#include "stages/sample_edges.h"
+
+namespace wirepose {
+
+struct VerifyParams {
+  float support_rate = 0.75F;   // share of a true object's visible edge samples that show an edge
+  float sample_weight = 0.5F;   // neighbouring samples are not independent
+  int face_grid_px = 6;         // spacing of patches on a face
+  int max_face_patches = 80;    // per face; the grid widens to fit
+  float min_face_px2 = 250;     // smaller faces abstain
+  float silhouette_offset_px = 6;  // how far outside of the outline its background is looked at
+};
+
+// What speaks for and against a pose. All terms are log-likelihood ratios up to calibration: 0 abstains.
+struct Evidence {
+  float edges = 0;        // visible edge samples with and without an image edge, both images
+  float faces = 0;        // visible faces predict the right image from the left one, compared with shifted depths
+  float silhouette = 0;   // beside the outline the scene is farther away than the object's surface continued
+  float support = 0;      // share of visible edge length in the left image that shows an edge, 0..1
+  float inside = 0;       // share of the visible edges that lies in the left image, 0..1
+  float visible_px = 0;   // length of visible edges in the left image
+  std::uint16_t supported_edges = 0;  // edges with support of more than half
+  std::uint16_t supported_faces = 0;  // faces that touch such edges (the paper ranks by lines and faces)
+};
+
+struct VerifyInput {
+  const RectifiedCamera& camera;
+  const EdgeMap& left_edges;
+  const EdgeMap& right_edges;
+  const NormalizedPlane& left;
+  const NormalizedPlane& right;
+};
+
+struct VerifyScratch {
+  EdgeSamples samples;
+  FrontTriangles front;
+};
+
+// Lines place an object but do not decide its presence: random poses reach high support in clutter. So evidence grows
+// with length, unsupported edges count against, each face must be photo-consistent at its own depth rather than at
+// others (textured faces vote, blank ones abstain), and beside the silhouette the depth must drop: on a cabinet front or
+// a poster it goes on. What lies outside an image abstains. O(samples * triangles + patches).
+void GatherEvidence(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model,
+                    const Pose& T_camera_model, VerifyScratch& scratch, Evidence& out);
+
+}  // namespace wirepose
+
+#endif  // WIREPOSE_STAGES_VERIFICATION_H_
