@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "base/fixed_vector.h"
 
@@ -44,6 +45,8 @@ class KeepBest {
     return items_;
   }
 
+  // In the order that the last Sorted() or Push() left.
+  [[nodiscard]] std::span<const T> items() const { return {items_.begin(), items_.end()}; }
   [[nodiscard]] std::size_t size() const { return items_.size(); }
   [[nodiscard]] std::uint32_t dropped() const { return dropped_; }
 

@@ -1,5 +1,7 @@
 #include "pipeline/recognizer.h"
 
+#include <algorithm>
+
 namespace wirepose {
 
 const char* StageName(Stage stage) {
@@ -32,24 +34,154 @@ const char* Describe(RecognizerError error) {
   return "?";
 }
 
-RecognizerError Recognizer::Configure(const StereoCalibration& calibration) {
-  camera_.width = calibration.width;
-  camera_.height = calibration.height;
+RecognizerError Recognizer::Configure(const StereoCalibration& calibration, const RecognizerParams& params) {
+  const bool fits = calibration.width >= 64 && calibration.width <= kMaxImageWidth && calibration.height >= 64 &&
+                    calibration.height <= kMaxImageHeight;
+  if (!fits) return RecognizerError::kImageTooLarge;
+  if (!ComputeRectification(calibration, rectification_)) return RecognizerError::kBadCalibration;
+  params_ = params;
+  configured_ = true;
   return RecognizerError::kOk;
 }
 
 RecognizerError Recognizer::AddModel(const ModelView& model) {
-  for (const ModelView& m : models_) {
-    if (m.id == model.id) return RecognizerError::kDuplicateModel;
+  for (const PreparedModel& m : models_) {
+    if (m.view.id == model.id) return RecognizerError::kDuplicateModel;
   }
-  return models_.try_push_back(model) ? RecognizerError::kOk : RecognizerError::kTooManyModels;
+  if (models_.full()) return RecognizerError::kTooManyModels;
+  models_.resize(models_.size() + 1);
+  PrepareModel(model, models_.back());
+  return RecognizerError::kOk;
 }
 
 void Recognizer::ClearModels() { models_.clear(); }
 
-RecognizerError Recognizer::Process(ImageView, ImageView, StageObserver*, RecognitionResult& result) {
+std::span<const SetMember> Recognizer::line_set(std::size_t i) const {
+  const auto& members = candidates()[accepted_[i]].members;
+  return {members.begin(), members.end()};
+}
+
+std::span<const Candidate> Recognizer::candidates() const { return candidates_.items(); }
+
+// The flow: frame -> rectified pair -> segments -> 3D lines -> line sets -> (for each model) correspondences ->
+// hypotheses -> promoted sets -> refined, verified poses -> detections.
+RecognizerError Recognizer::Process(ImageView left, ImageView right, StageObserver* observer, RecognitionResult& result) {
   result = {};
+  if (!configured_) return RecognizerError::kNotConfigured;
+  for (const ImageView& image : {left, right}) {
+    if (image.width != camera().width || image.height != camera().height || image.data == nullptr) {
+      return RecognizerError::kImageSizeMismatch;
+    }
+  }
+  StageTimer timer(observer);
+  FindFeatures(left, right, timer, result.statistics);
+  candidates_.clear();
+  for (std::size_t m = 0; m < models_.size(); ++m) MatchModel(m, timer, result);
+  Report(result);
+  timer.Done(Stage::kSelect);
   return RecognizerError::kOk;
+}
+
+void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics) {
+  const int width = camera().width, height = camera().height;
+  RectifyImage(left, rectification_.left, {left_rectified_.data(), width, height, kMaxImageWidth});
+  RectifyImage(right, rectification_.right, {right_rectified_.data(), width, height, kMaxImageWidth});
+  timer.Done(Stage::kRectify);
+
+  const auto find = [&](const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
+                        Segments& segments) {
+    SmoothImage(View(image), smooth);
+    FindRidges(smooth, width, height, map, params_.edges, edges_);
+    BuildEdgeMap(edges_, edge_map);
+    FindSegments(params_.segments, edges_, segment_scratch_, segments);
+  };
+  find(right_rectified_, rectification_.right, right_smooth_, right_edges_, right_segments_);
+  find(left_rectified_, rectification_.left, left_smooth_, left_edges_, left_segments_);
+  timer.Done(Stage::kSegments);
+
+  NormalizeLocally(View(left_rectified_), left_normalized_);
+  NormalizeLocally(View(right_rectified_), right_normalized_);
+  MatchLines(params_.stereo, {camera(), left_normalized_, right_normalized_, right_smooth_, rectification_.right},
+             left_segments_, stereo_scratch_, lines_);
+  timer.Done(Stage::kStereoLines);
+
+  FindLineSets(params_.line_sets, camera(), lines_, line_sets_);
+  timer.Done(Stage::kLineSets);
+
+  const auto use = [](std::size_t used, std::size_t capacity, std::uint32_t dropped) {
+    return ListUse{static_cast<std::uint32_t>(used), static_cast<std::uint32_t>(capacity), dropped};
+  };
+  statistics.left_segments = use(left_segments_.items.size(), kMaxSegments, left_segments_.dropped);
+  statistics.right_segments = use(right_segments_.items.size(), kMaxSegments, right_segments_.dropped);
+  statistics.lines = use(lines_.size(), kMaxSegments, 0);
+  statistics.line_sets = use(line_sets_.pairs.size(), kMaxImageLinePairs, line_sets_.dropped);
+}
+
+void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result) {
+  const PreparedModel& model = models_[m];
+  const auto count = [](ListUse& list, std::size_t used, std::size_t capacity, std::uint32_t dropped) {
+    list.used = std::max(list.used, static_cast<std::uint32_t>(used));
+    list.capacity = static_cast<std::uint32_t>(capacity);
+    list.dropped += dropped;
+  };
+  FindCorrespondences(params_.correspondences, camera(), model, lines_, line_sets_, pairs_);
+  count(result.statistics.correspondences, pairs_.size(), kMaxCorrespondences, pairs_.dropped());
+  timer.Done(Stage::kCorrespondences);
+
+  const SceneEdges scene{camera(), left_edges_, right_edges_};
+  const auto& pairs = pairs_.Sorted();
+  MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, {pairs.begin(), pairs.end()}, hypotheses_);
+  count(result.statistics.hypotheses, hypotheses_.size(), kMaxHypotheses, hypotheses_.dropped());
+  const auto& hypotheses = hypotheses_.Sorted();
+  const PoseScorer scorer(params_.hypotheses.score, scene, model);
+  PromoteSets(params_.promotion, scorer, camera(), model, lines_, {hypotheses.begin(), hypotheses.end()}, sets_);
+  timer.Done(Stage::kHypotheses);
+
+  FixedVector<Candidate, kMaxRefined> refined;
+  const SceneImages images{camera(), left_smooth_, right_smooth_};
+  for (const CorrespondingSet& set : sets_) {
+    if (refined.full()) break;
+    Candidate candidate;
+    candidate.model = static_cast<std::uint16_t>(m);
+    candidate.order = static_cast<std::uint16_t>(refined.size());
+    candidate.members = set.members;
+    const Pose start{Orthonormalize(set.R.cast<double>()), set.t.cast<double>()};
+    RefinePose(params_.refine, images, model, start, refine_scratch_, candidate.pose);
+    if (candidate.pose.ok) refined.push_back(candidate);
+  }
+  timer.Done(Stage::kRefine);
+
+  const VerifyInput input{camera(), left_edges_, right_edges_, left_normalized_, right_normalized_};
+  for (Candidate& candidate : refined) {
+    GatherEvidence(params_.verify, input, model, candidate.pose.T_camera_model, verify_scratch_, candidate.evidence);
+    candidate.score = ScoreOf(params_.select.score, candidate.evidence, candidate.pose);
+    candidates_.Push(candidate);
+  }
+  timer.Done(Stage::kVerify);
+}
+
+void Recognizer::Report(RecognitionResult& result) {
+  const auto& candidates = candidates_.Sorted();
+  std::uint32_t dropped = 0;
+  SelectDetections(params_.select, camera(), left_edges_, models(), {candidates.begin(), candidates.end()},
+                   verify_scratch_, claims_, accepted_, dropped);
+  // Results are given in the raw left camera's frame.
+  const Pose T_raw_rectified = T_rectified_raw().Inverse();
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = T_raw_rectified.R;
+  turn.bottomRightCorner<3, 3>() = T_raw_rectified.R;
+  for (const std::uint16_t i : accepted_) {
+    const Candidate& candidate = candidates[i];
+    Detection detection;
+    detection.model_id = models_[candidate.model].view.id;
+    detection.T_camera_model = T_raw_rectified * candidate.pose.T_camera_model;
+    detection.covariance = turn * candidate.pose.covariance * turn.transpose();
+    detection.score = candidate.score;
+    detection.visible_fraction = candidate.evidence.support * candidate.evidence.inside;
+    result.detections.push_back(detection);
+  }
+  result.statistics.detections = {static_cast<std::uint32_t>(accepted_.size()),
+                                  static_cast<std::uint32_t>(kMaxDetections), dropped};
 }
 
 }  // namespace wirepose

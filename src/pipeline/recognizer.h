@@ -9,10 +9,21 @@
 #include "base/image_view.h"
 #include "capacities.h"
 #include "geometry/camera.h"
-#include "geometry/line3.h"
-#include "geometry/segment2.h"
-#include "model/model_view.h"
+#include "model/prepared_model.h"
 #include "pipeline/recognition.h"
+#include "stages/correspondences.h"
+#include "stages/edge_image.h"
+#include "stages/edge_map.h"
+#include "stages/hypotheses.h"
+#include "stages/line_sets.h"
+#include "stages/normalize.h"
+#include "stages/promotion.h"
+#include "stages/rectification.h"
+#include "stages/refinement.h"
+#include "stages/segments.h"
+#include "stages/selection.h"
+#include "stages/stereo_lines.h"
+#include "stages/verification.h"
 
 namespace wirepose {
 
@@ -42,36 +53,100 @@ class StageObserver {
   virtual void DoStageDone(Stage stage) = 0;
 };
 
+// Every parameter of every stage, with the one default that all models and all data share.
+struct RecognizerParams {
+  EdgeImageParams edges;
+  SegmentParams segments;
+  StereoLineParams stereo;
+  LineSetParams line_sets;
+  CorrespondenceParams correspondences;
+  HypothesisParams hypotheses;
+  PromotionParams promotion;
+  RefineParams refine;
+  VerifyParams verify;
+  SelectParams select;
+};
+
+// Tells the observer, if any.
+class StageTimer {
+ public:
+  explicit StageTimer(StageObserver* observer) : observer_(observer) {}
+  void Done(Stage stage) {
+    if (observer_ != nullptr) observer_->StageDone(stage);
+  }
+
+ private:
+  StageObserver* observer_;
+};
+
 // All memory of the recognizer is part of this object: make it static. Not thread safe; no call allocates, blocks or
 // reads a clock. The same calls with the same bytes give the same bytes on every target.
 class Recognizer {
  public:
   // Computes the rectification. Keeps the models. Any previous calibration is replaced; on error nothing changes.
-  RecognizerError Configure(const StereoCalibration& calibration);
+  RecognizerError Configure(const StereoCalibration& calibration, const RecognizerParams& params = {});
 
   // Adds an object to search for. The bytes behind the view must stay unchanged until ClearModels.
   RecognizerError AddModel(const ModelView& model);
   void ClearModels();
-  [[nodiscard]] std::span<const ModelView> models() const { return {models_.begin(), models_.end()}; }
+  [[nodiscard]] std::span<const PreparedModel> models() const { return {models_.begin(), models_.end()}; }
 
   // Recognizes every added model in a raw pair of the calibrated size. `observer` may be null. Bounded time: every loop
   // has a compile-time bound; a search that stops at its bound sets `budget_hit`.
   RecognizerError Process(ImageView left, ImageView right, StageObserver* observer, RecognitionResult& result);
 
   // The rectified pair's camera and the rotation into it: p_rectified = T_rectified_raw * p_raw (rotation only).
-  [[nodiscard]] const RectifiedCamera& camera() const { return camera_; }
-  [[nodiscard]] const Pose& T_rectified_raw() const { return T_rectified_raw_; }
+  [[nodiscard]] const RectifiedCamera& camera() const { return rectification_.camera; }
+  [[nodiscard]] const Pose& T_rectified_raw() const { return rectification_.T_rectified_raw; }
 
-  // Intermediates of the last Process, for overlays and tests. Rectified left frame.
-  [[nodiscard]] ImageView left_rectified() const { return {}; }
-  [[nodiscard]] ImageView right_rectified() const { return {}; }
-  [[nodiscard]] std::span<const Segment2> left_segments() const { return {}; }
-  [[nodiscard]] std::span<const Line3> lines() const { return {}; }
+  // Intermediates of the last Process, for overlays and tests. Rectified left frame; valid until the next call.
+  [[nodiscard]] ImageView left_rectified() const { return View(left_rectified_); }
+  [[nodiscard]] ImageView right_rectified() const { return View(right_rectified_); }
+  [[nodiscard]] std::span<const Segment2> left_segments() const { return {left_segments_.items.begin(), left_segments_.items.end()}; }
+  [[nodiscard]] std::span<const Segment2> right_segments() const { return {right_segments_.items.begin(), right_segments_.items.end()}; }
+  [[nodiscard]] std::span<const Line3> lines() const { return {lines_.begin(), lines_.end()}; }
+  // The corresponding line set behind detection i: which image line lies on which model edge.
+  [[nodiscard]] std::span<const SetMember> line_set(std::size_t i) const;
+  // Verified candidates of all models, by falling score: what was nearly reported, and why not.
+  [[nodiscard]] std::span<const Candidate> candidates() const;
 
  private:
-  RectifiedCamera camera_;
-  Pose T_rectified_raw_;
-  FixedVector<ModelView, kMaxModels> models_;
+  using ImagePlane = std::array<std::uint8_t, kMaxPixels>;
+
+  [[nodiscard]] ImageView View(const ImagePlane& plane) const {
+    return {plane.data(), camera().width, camera().height, kMaxImageWidth};
+  }
+  void FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics);
+  void MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result);
+  void Report(RecognitionResult& result);
+
+  RecognizerParams params_;
+  bool configured_ = false;
+  Rectification rectification_;
+  FixedVector<PreparedModel, kMaxModels> models_;
+
+  // Per frame, in the order of the flow.
+  ImagePlane left_rectified_, right_rectified_;
+  SmoothPlane left_smooth_, right_smooth_;
+  NormalizedPlane left_normalized_, right_normalized_;
+  EdgeImage edges_;  // of one eye at a time
+  EdgeMap left_edges_, right_edges_;
+  Segments left_segments_, right_segments_;
+  Lines3 lines_;
+  ImageLineSets line_sets_;
+  // Per model.
+  CorrespondingPairs pairs_;
+  Hypotheses hypotheses_;
+  CorrespondingSets sets_;
+  // Of all models.
+  Candidates candidates_;
+  FixedVector<std::uint16_t, kMaxDetections> accepted_;
+
+  SegmentScratch segment_scratch_;
+  StereoScratch stereo_scratch_;
+  RefineScratch refine_scratch_;
+  VerifyScratch verify_scratch_;
+  ClaimMap claims_;
 };
 
 }  // namespace wirepose

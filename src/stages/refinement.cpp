@@ -75,7 +75,7 @@ class Refiner {
     out = {};
     out.T_camera_model = start;
     for (int i = 0; i < params_.iterations; ++i) {
-      if (i % 3 == 0) SampleVisibleEdges({}, images_.camera, model_, T, scratch_.front, scratch_.samples);
+      if (i == 0 || i == params_.iterations / 2) SampleVisibleEdges(params_.samples, images_.camera, model_, T, scratch_.front, scratch_.samples);
       const float share = static_cast<float>(i) / static_cast<float>(std::max(1, params_.iterations - 1));
       // Halves early: the first iterations bring most edges close.
       const float range = params_.first_range_px + (params_.last_range_px - params_.first_range_px) * std::sqrt(share);

@@ -8,7 +8,8 @@
 namespace wirepose {
 
 struct RefineParams {
-  int iterations = 10;
+  int iterations = 9;
+  SampleParams samples;
   float first_range_px = 12;   // 1D search along the edge normal; shrinks to last_range_px
   float last_range_px = 4;
   float min_gradient = 1.0F;   // grey levels per pixel: weaker edges are not followed
@@ -39,7 +40,7 @@ struct RefinedPose {
 
 // Robust Gauss-Newton on SE(3). The closest image feature of eq. 11 is searched along the normal of the projected edge
 // (RAPiD: Harris & Stennett 1990) in both images; all offsets enter one 6x6 normal matrix with Geman-McClure weights.
-// The search range shrinks from iteration to iteration; hidden lines are found anew every third. Only qualified
+// The search range shrinks from iteration to iteration; hidden lines are found at the start and anew half way. Only qualified
 // features count at the end: edges of which a good share was found. O(iterations * samples * range).
 void RefinePose(const RefineParams& params, const SceneImages& images, const PreparedModel& model, const Pose& start,
                 RefineScratch& scratch, RefinedPose& out);

@@ -47,18 +47,37 @@ Vector2 Unit(const Vector2& v) {
 
 }  // namespace
 
-void FindFrontTriangles(const ModelView& model, const Vector3& eye, FrontTriangles& out) {
+void FindFrontTriangles(const RectifiedCamera& camera, const ModelView& model, const Pose& T_camera_model,
+                        FrontTriangles& out) {
   out.clear();
+  const Matrix3 R = T_camera_model.R.cast<float>();
+  const Vector3 t = T_camera_model.t.cast<float>();
+  const Vector3 eye = -(R.transpose() * t);
   for (std::size_t i = 0; i < model.triangles.size(); ++i) {
-    if (FacesEye(model.faces[model.triangles[i].face], eye)) out.push_back(static_cast<std::uint16_t>(i));
+    const ModelTriangle& triangle = model.triangles[i];
+    if (!FacesEye(model.faces[triangle.face], eye)) continue;
+    FrontTriangle front{static_cast<std::uint16_t>(i), Vector2(1e9F, 1e9F), Vector2(-1e9F, -1e9F)};
+    for (const std::uint16_t v : triangle.vertex) {
+      const Vector3 p = R * model.VertexPosition(v) + t;
+      if (p.z() < 0.02F) {  // reaches behind the camera: may hide anything
+        front.low.setConstant(-1e9F);
+        front.high.setConstant(1e9F);
+        break;
+      }
+      const Vector2 u = ProjectPoint(camera, p).left;
+      front.low = front.low.cwiseMin(u);
+      front.high = front.high.cwiseMax(u);
+    }
+    out.push_back(front);
   }
 }
 
 bool IsHidden(const ModelView& model, const FrontTriangles& front, const Vector3& eye, const Vector3& point,
-              std::uint16_t a, std::uint16_t b) {
+              const Vector2& image, std::uint16_t a, std::uint16_t b) {
   const Vector3 ray = point - eye;
-  for (const std::uint16_t i : front) {
-    const ModelTriangle& t = model.triangles[i];
+  for (const FrontTriangle& f : front) {
+    if (image.x() < f.low.x() || image.y() < f.low.y() || image.x() > f.high.x() || image.y() > f.high.y()) continue;
+    const ModelTriangle& t = model.triangles[f.triangle];
     if (t.face == a || t.face == b) continue;
     if (Blocks(model.VertexPosition(t.vertex[0]), model.VertexPosition(t.vertex[1]), model.VertexPosition(t.vertex[2]),
                eye, ray)) {
@@ -75,7 +94,7 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
   const Vector3 t = T_camera_model.t.cast<float>();
   const Vector3 eye = -(R.transpose() * t);
   const EdgeBits visible = model.VisibleEdges(eye);
-  if (!model.convex) FindFrontTriangles(model.view, eye, scratch);
+  if (!model.convex) FindFrontTriangles(camera, model.view, T_camera_model, scratch);
   const float near = (R * model.centre + t).z() / params.max_depth_ratio;
 
   const auto for_each_edge = [&](const auto& use) {
@@ -107,7 +126,7 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
       sample.left = pa.left + s * (pb.left - pa.left);
       sample.disparity = pa.disparity + s * (pb.disparity - pa.disparity);
       const ModelEdge& edge = model.view.edges[e];
-      if (!model.convex && IsHidden(model.view, scratch, eye, sample.point, edge.face[0], edge.face[1])) continue;
+      if (!model.convex && IsHidden(model.view, scratch, eye, sample.point, sample.left, edge.face[0], edge.face[1])) continue;
       out.push_back(sample);
     }
   });

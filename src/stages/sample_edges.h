@@ -29,8 +29,12 @@ struct SampleParams {
   float max_depth_ratio = 8;  // edges that come closer than depth / ratio are left out: they run through the camera
 };
 
-// Which triangles face an observer: all that can hide anything.
-using FrontTriangles = FixedVector<std::uint16_t, kMaxModelTriangles>;
+// A triangle that faces the camera: all that can hide anything. With its bounding box in the left image.
+struct FrontTriangle {
+  std::uint16_t triangle = 0;
+  Vector2 low = Vector2::Zero(), high = Vector2::Zero();  // px
+};
+using FrontTriangles = FixedVector<FrontTriangle, kMaxModelTriangles>;
 
 // Samples the edges of `model` that the left camera sees at T_camera_model (paper section 3.2: "features connected to
 // the hidden faces can be removed"): edges with at least one face towards the camera, point by point tested against
@@ -39,12 +43,14 @@ using FrontTriangles = FixedVector<std::uint16_t, kMaxModelTriangles>;
 void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                         const Pose& T_camera_model, FrontTriangles& scratch, EdgeSamples& out);
 
-// True when a front triangle other than those of faces `a` and `b` lies between `eye` and `point` (model frame).
+// True when a front triangle other than those of faces `a` and `b` lies between `eye` and `point` (model frame), which
+// appears at `image` in the left image. O(front triangles).
 bool IsHidden(const ModelView& model, const FrontTriangles& front, const Vector3& eye, const Vector3& point,
-              std::uint16_t a, std::uint16_t b);
+              const Vector2& image, std::uint16_t a, std::uint16_t b);
 
-// The triangles that face `eye`.
-void FindFrontTriangles(const ModelView& model, const Vector3& eye, FrontTriangles& out);
+// The triangles that face the camera at T_camera_model.
+void FindFrontTriangles(const RectifiedCamera& camera, const ModelView& model, const Pose& T_camera_model,
+                        FrontTriangles& out);
 
 }  // namespace wirepose
 

@@ -1,0 +1,68 @@
+// Stage 8: which candidates are reported.
+#ifndef WIREPOSE_STAGES_SELECTION_H_
+#define WIREPOSE_STAGES_SELECTION_H_
+
+#include "base/keep_best.h"
+#include "stages/promotion.h"
+#include "stages/refinement.h"
+#include "stages/verification.h"
+
+namespace wirepose {
+
+// Score = logistic function of the evidence. The weights are one set for all models and data; they were fitted on
+// simulated kitchens (docs/decisions/0005-score.md), never on recorded test data.
+struct ScoreParams {
+  float bias = -10.0F;
+  float edge_density = 0.28F;  // per log-likelihood unit and 100 px of visible edge
+  float log_length = 1.2F;     // per natural logarithm of visible edge length over 300 px
+  float faces = 0.33F;         // per unit of face evidence
+  float silhouette = 0.04F;    // per unit of silhouette evidence
+  float rms = -0.5F;           // per px of residual after refinement
+};
+
+struct SelectParams {
+  ScoreParams score;
+  float min_score = 0.5F;      // lower ones are not reported
+  float max_claimed = 0.5F;    // share of a candidate's supported edges that stronger detections may own
+};
+
+// A verified pose of one model in the rectified left frame.
+struct Candidate {
+  std::uint16_t model = 0;  // index of the added model
+  std::uint16_t order = 0;  // among the model's candidates; breaks ties
+  RefinedPose pose;
+  Evidence evidence;
+  FixedVector<SetMember, kMaxSetLines> members;  // the corresponding line set behind it
+  float score = 0;
+};
+
+struct BetterCandidate {
+  bool operator()(const Candidate& p, const Candidate& q) const {
+    if (p.score != q.score) return p.score > q.score;
+    return p.model != q.model ? p.model < q.model : p.order < q.order;
+  }
+};
+using Candidates = KeepBest<Candidate, kMaxVerified, BetterCandidate>;
+
+// Probability that the candidate is right.
+float ScoreOf(const ScoreParams& params, const Evidence& evidence, const RefinedPose& pose);
+
+// Work space: which 4 x 4 px blocks of the left image belong to an accepted detection's edges.
+struct ClaimMap {
+  static constexpr int kBlock = 4;
+  static constexpr int kWidth = kMaxImageWidth / kBlock;
+  static constexpr int kHeight = kMaxImageHeight / kBlock;
+  std::array<bool, std::size_t{kWidth} * kHeight> claimed;
+};
+
+// Greedy and exclusive: candidates by falling score; each owns the image edges that support it, and one whose support
+// mostly belongs to others is dropped. Instances of one model at the same place (modulo symmetry) merge. `accepted`
+// receives indices into `candidates`, best first. O(candidates * samples).
+void SelectDetections(const SelectParams& params, const RectifiedCamera& camera, const EdgeMap& left,
+                      std::span<const PreparedModel> models, std::span<const Candidate> candidates,
+                      VerifyScratch& scratch, ClaimMap& claims, FixedVector<std::uint16_t, kMaxDetections>& accepted,
+                      std::uint32_t& dropped);
+
+}  // namespace wirepose
+
+#endif  // WIREPOSE_STAGES_SELECTION_H_
