@@ -82,7 +82,8 @@ void HealthMonitor::CameraFailed(hal::CameraError error, std::string_view detail
 void HealthMonitor::Stopped() { SetState(HealthState::kStopped, report_.camera_status); }
 
 bool HealthMonitor::Due(Clock::time_point now) const {
-  return !sent_ || report_.state != sent_state_ || now - *sent_ >= kPeriod;
+  return !sent_ || report_.state != sent_state_ || !(report_.camera_status == sent_status_) ||
+         now - *sent_ >= kPeriod;
 }
 
 HealthReport& HealthMonitor::Report(Clock::time_point now) {
@@ -94,6 +95,7 @@ HealthReport& HealthMonitor::Report(Clock::time_point now) {
 void HealthMonitor::Sent(Clock::time_point now) {
   sent_ = now;
   sent_state_ = report_.state;
+  sent_status_ = report_.camera_status;
 }
 
 void HealthMonitor::SetState(HealthState state, std::string_view status) {

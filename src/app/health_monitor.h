@@ -29,7 +29,8 @@ class HealthMonitor {
   void CameraFailed(hal::CameraError error, std::string_view detail);
   void Stopped();
 
-  // True once the state has changed since the last call of Sent, or a second has passed.
+  // True once state or camera status have changed since the last call of Sent, or a second has
+  // passed.
   [[nodiscard]] bool Due(Clock::time_point now) const;
   // The report as of now; the caller fills in what it knows itself: stage times, queue, drops and
   // write errors.
@@ -45,6 +46,7 @@ class HealthMonitor {
   const Clock::time_point started_;
   std::optional<Clock::time_point> sent_;
   HealthState sent_state_ = HealthState::kStarting;
+  FixedText<64> sent_status_;
   std::uint64_t next_sequence_ = 0;
 };
 

@@ -28,12 +28,22 @@ std::string ReadWhole(const std::filesystem::path& file) {
   return text.str();
 }
 
+// Keys and words of a damaged file may hold anything; a message is one short line.
+std::string OneLine(std::string text) {
+  constexpr std::size_t kMaxBytes = 300;
+  if (text.size() > kMaxBytes) text.replace(kMaxBytes, std::string::npos, "...");
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') c = '?';
+  }
+  return text;
+}
+
 YAML::Node Parse(const std::filesystem::path& file) {
   try {
     return YAML::Load(ReadWhole(file));
   } catch (const YAML::Exception& e) {
     throw UsageError(file.string() + ":" + std::to_string(e.mark.line + 1) +
-                     ": not YAML: " + e.msg + "; correct the line");
+                     ": not YAML: " + OneLine(e.msg) + "; correct the line");
   }
 }
 
@@ -205,7 +215,7 @@ void YamlSection::RefuseAt(const YAML::Mark& mark, const std::string& key,
   if (!name.empty() && !key.empty()) name.append(".");
   name.append(key);
   if (!name.empty()) name.append(": ");
-  throw UsageError(place + ": " + name + reason);
+  throw UsageError(place + ": " + OneLine(name + reason));
 }
 
 }  // namespace wirepose::app

@@ -2,12 +2,12 @@
 // publisher to a reader.
 #include <dds/ddsi/ddsi_serdata.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <functional>
 #include <memory>
 #include <vector>
 
+#include "../dds_domain.h"
 #include "cdr_reader.h"
 #include "publish/publisher.h"
 #include "reports_for_test.h"
@@ -21,7 +21,7 @@ using test::CdrReader;
 class WireTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    config_.bus = {static_cast<std::uint32_t>(100 + getpid() % 60), true};
+    config_.bus = {domain_.id(), true};
     config_.frame_id = "left_optical";
     config_.version = "9.8.7";
     const auto opened = publisher_->Open(config_, models_);
@@ -76,6 +76,7 @@ class WireTest : public ::testing::Test {
     return bytes;
   }
 
+  test::DdsDomain domain_;
   std::mt19937 random_{6};
   ModelView models_[1] = {test::MakeModel(7, "juice_dispenser")};
   PublisherConfig config_;

@@ -1,9 +1,13 @@
 #include "watch_command.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <chrono>
 #include <iostream>
+#include <limits>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "message_text.h"
 #include "publish/bus.h"
@@ -88,10 +92,10 @@ std::vector<std::unique_ptr<Subscription>> Subscribe(const Bus& bus, const std::
 }
 
 [[noreturn]] void FailForSilence(const WatchOptions& options) {
-  throw WorkFailed("nothing arrived for " + std::to_string(options.timeout_s) +
-                   " s on DDS domain " + std::to_string(options.domain) +
-                   (options.loopback ? " (loopback)" : "") +
-                   "; is wireposed running with the same domain and loopback setting?");
+  throw WorkFailed(
+      fmt::format("nothing arrived for {} s on DDS domain {}{}; is wireposed running with the same "
+                  "domain and loopback setting?",
+                  options.timeout_s, options.domain, options.loopback ? " (loopback)" : ""));
 }
 
 void Watch(const WatchOptions& options) {
