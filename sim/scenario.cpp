@@ -105,7 +105,7 @@ void AddLights(Random& random, Scene& scene) {
 // An albedo that stands out from its surroundings by at least 0.15.
 float StandOut(Random& random, float surroundings) {
   for (int i = 0; i < 50; ++i) {
-    const float albedo = Pick(random, 0.15, 0.85);
+    const float albedo = Pick(random, 0.2, 0.85);
     if (std::abs(albedo - surroundings) > 0.15F) return albedo;
   }
   return surroundings > 0.5F ? 0.2F : 0.8F;

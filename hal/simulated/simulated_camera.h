@@ -44,9 +44,10 @@ struct SimulatedTruth {
 // times are sequence / frame_rate_hz. The same configuration gives the same frames, stamps and
 // bytes each time; Start begins at the first frame.
 //
-// Open: kNotFound (no mesh folder), kBadData (no usable mesh; truth file not writable),
-// kUnsupported (configuration). AcquireFrame: kTimeout (still rendering), kNoBuffer, kEndOfStream,
-// kBadData (the truth file could not be written).
+// Open: kNotFound (no mesh folder), kBadData (no usable mesh), kUnsupported (configuration, or no
+// mesh is small enough). Start: kBadData (truth file not writable). AcquireFrame: kTimeout (still
+// rendering), kNoBuffer, kEndOfStream, kBadData (the truth file refused a line). Stop waits for the
+// frame in the making, about a second.
 class SimulatedCamera final : public StereoCamera {
  public:
   static constexpr std::uint32_t kBuffers = 4;
