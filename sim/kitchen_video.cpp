@@ -18,7 +18,8 @@ Result<KitchenVideo, std::string> KitchenVideo::Create(const VideoConfig& config
   if (config.threads < 1 || config.threads > 64) {
     return unexpected<std::string>("simulator: threads are not in 1..64; give 2");
   }
-  Result<Scenario, std::string> scenario = KitchenScenario(config.seed, targets);
+  Result<Scenario, std::string> scenario =
+      KitchenScenario(config.seed, targets, config.calibration);
   if (!scenario) return unexpected(scenario.error());
   return KitchenVideo(config, *std::move(scenario));
 }

@@ -18,6 +18,7 @@ struct VideoConfig {
   double frame_rate_hz = 30;
   int samples_per_side = 4;  // per pixel the square of this, 2..6
   int threads = 2;           // does not change a byte
+  StereoCalibration calibration = DefaultCalibration();
 };
 
 // Frames may be shot in any order and on any thread; each is a pure function of configuration,

@@ -253,7 +253,8 @@ void AimCamera(Random& random, Scenario& scenario) {
   scenario.rig.T_world_left = LookAt(scenario.look_at + distance * back, scenario.look_at, roll);
 }
 
-Scenario TryLayout(std::uint64_t seed, const std::vector<const TargetMesh*>& small) {
+Scenario TryLayout(std::uint64_t seed, const std::vector<const TargetMesh*>& small,
+                   const StereoCalibration& calibration) {
   Random random(seed);
   Scenario scenario;
   SceneBuilder builder(scenario.scene);
@@ -262,7 +263,7 @@ Scenario TryLayout(std::uint64_t seed, const std::vector<const TargetMesh*>& sma
   Counter counter(random, builder);
   PlaceTargets(random, small, counter, counter_albedo);
   PlaceDistractors(random, counter);
-  scenario.rig.calibration = DefaultCalibration();
+  scenario.rig.calibration = calibration;
   AimCamera(random, scenario);
   return scenario;
 }
@@ -301,7 +302,8 @@ StereoRig Scenario::RigAt(double time_s) const {
 }
 
 Result<Scenario, std::string> KitchenScenario(std::uint64_t seed,
-                                              const std::vector<TargetMesh>& targets) {
+                                              const std::vector<TargetMesh>& targets,
+                                              const StereoCalibration& calibration) {
   std::vector<const TargetMesh*> small;
   for (const TargetMesh& target : targets) {
     const Vector3 size = target.mesh.Max() - target.mesh.Min();
@@ -315,7 +317,7 @@ Result<Scenario, std::string> KitchenScenario(std::uint64_t seed,
   Scenario best;
   double best_visibility = -1;
   for (int i = 0; i < kMaxLayouts && best_visibility < kWantedVisibility; ++i) {
-    Scenario scenario = TryLayout(Mix(seed, static_cast<std::uint64_t>(i)), small);
+    Scenario scenario = TryLayout(Mix(seed, static_cast<std::uint64_t>(i)), small, calibration);
     const double visibility = WorstVisibility(scenario);
     if (visibility <= best_visibility) continue;
     best_visibility = visibility;

@@ -29,8 +29,9 @@ struct Scenario {
 // are small enough to stand there (0.6 m) rest on it, mostly unoccluded at time 0, among cartons,
 // jars and cans. The camera is 0.7 to 1.4 m away and looks down by 15 to 40 degrees. The same seed
 // and targets give the same scenario. The error is one line: no target is small enough.
-[[nodiscard]] Result<Scenario, std::string> KitchenScenario(std::uint64_t seed,
-                                                            const std::vector<TargetMesh>& targets);
+[[nodiscard]] Result<Scenario, std::string> KitchenScenario(
+    std::uint64_t seed, const std::vector<TargetMesh>& targets,
+    const StereoCalibration& calibration = DefaultCalibration());
 
 }  // namespace wirepose::sim
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "hal/buffer_ring.h"
+#include "hal/dataset/calibration_file.h"
 #include "sim/kitchen_video.h"
 
 namespace wirepose::hal {
@@ -215,8 +216,17 @@ CameraError SimulatedCamera::DoOpen(StereoCalibration& calibration) {
     detail_ = targets.error();
     return CameraError::kBadData;
   }
-  const sim::VideoConfig video_config{config_.seed, config_.frame_rate_hz,
-                                      SamplesPerSide(config_.samples_per_pixel)};
+  sim::VideoConfig video_config{config_.seed, config_.frame_rate_hz,
+                                SamplesPerSide(config_.samples_per_pixel)};
+  if (!config_.calibration_path.empty()) {
+    const Result<StereoCalibration, std::string> rig =
+        dataset::ReadCalibration(config_.calibration_path);
+    if (!rig) {
+      detail_ = rig.error();
+      return CameraError::kBadData;
+    }
+    video_config.calibration = *rig;
+  }
   Result<sim::KitchenVideo, std::string> video = sim::KitchenVideo::Create(video_config, *targets);
   if (!video) {
     detail_ = video.error();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "command.h"
+#include "hal/dataset/calibration_file.h"
 #include "hal/dataset/dataset_writer.h"
 #include "sim/kitchen_video.h"
 #include "sim/target_mesh.h"
@@ -20,6 +21,7 @@ namespace {
 struct RenderArguments {
   std::filesystem::path out;
   std::filesystem::path models = "models";
+  std::filesystem::path calibration;  // empty: the simulator's own rig
   int frames = 10;
   int scenes = 1;
   int samples = 16;
@@ -34,10 +36,12 @@ T OrFail(Result<T, std::string> result) {
   if constexpr (!std::is_void_v<T>) return *std::move(result);
 }
 
-void RenderScene(const RenderArguments& arguments, int scene_id,
-                 const std::vector<sim::TargetMesh>& targets, dataset::DatasetWriter& writer) {
+void RenderScene(const RenderArguments& arguments, const StereoCalibration& calibration,
+                 int scene_id, const std::vector<sim::TargetMesh>& targets,
+                 dataset::DatasetWriter& writer) {
   sim::VideoConfig config;
   config.seed = arguments.seed + static_cast<std::uint64_t>(scene_id - 1);
+  config.calibration = calibration;
   config.frame_rate_hz = arguments.frame_rate_hz;
   config.samples_per_side = static_cast<int>(std::lround(std::sqrt(arguments.samples)));
   config.threads = arguments.threads;
@@ -56,11 +60,14 @@ void RenderScene(const RenderArguments& arguments, int scene_id,
 
 void Render(const RenderArguments& arguments) {
   const std::vector<sim::TargetMesh> targets = OrFail(sim::LoadTargetMeshes(arguments.models));
+  const StereoCalibration calibration =
+      arguments.calibration.empty() ? sim::DefaultCalibration()
+                                    : OrFail(dataset::ReadCalibration(arguments.calibration));
   dataset::DatasetWriter writer =
-      OrFail(dataset::DatasetWriter::Create(arguments.out, sim::DefaultCalibration()));
+      OrFail(dataset::DatasetWriter::Create(arguments.out, calibration));
   OrFail(sim::WriteTargetMeshes(arguments.out, targets));
   for (int scene = 1; scene <= arguments.scenes; ++scene) {
-    RenderScene(arguments, scene, targets, writer);
+    RenderScene(arguments, calibration, scene, targets, writer);
   }
   std::printf("wrote %s: %d scenes of %d frames\n", arguments.out.c_str(), arguments.scenes,
               arguments.frames);
@@ -77,6 +84,8 @@ void AddSimCommand(CLI::App& app) {
   render->add_option("--out", arguments->out, "Folder of the new data set")->required();
   render->add_option("--models", arguments->models, "Folder of meshes (PLY, OBJ, STL; mm)")
       ->capture_default_str();
+  render->add_option("--calibration", arguments->calibration,
+                     "calib.yaml of the rig to simulate; none: the simulator's own");
   render->add_option("--frames", arguments->frames, "Frames a scene; the camera moves slowly")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
