@@ -27,6 +27,7 @@ hal::SimulatedConfig ReadSimulated(YamlSection section) {
   std::int64_t frames = static_cast<std::int64_t>(config.frame_count);
   std::int64_t samples = config.samples_per_pixel;
   section.Read("meshes", config.mesh_dir);
+  section.Read("calibration", config.calibration_path);
   section.Read("seed", seed, 0, std::numeric_limits<std::int64_t>::max());
   section.Read("frames", frames, 0, kMaxFrames);
   section.Read("frame_rate_hz", config.frame_rate_hz, 1, 1000);
