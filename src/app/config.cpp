@@ -47,7 +47,7 @@ CameraConfig ReadCamera(YamlSection section, const std::filesystem::path& file) 
   if (section.Read("backend", backend)) {
     config.backend = ParseCameraBackend(backend, file.string() + ": camera.backend");
   }
-  section.Read("timeout_ms", timeout_ms, 10, 1000);
+  section.Read("timeout_ms", timeout_ms, 10, 60'000);
   config.timeout = std::chrono::milliseconds(timeout_ms);
   config.replay = ReadReplay(section.Section("replay"));
   config.simulated = ReadSimulated(section.Section("simulated"));

@@ -22,8 +22,7 @@ CameraBackend ParseCameraBackend(const std::string& name, const std::string& whe
 
 struct CameraConfig {
   CameraBackend backend = CameraBackend::kUnset;
-  // Wait for a frame. Bounded by 1 s, because health, watchdog and signals are looked after between
-  // two waits.
+  // Without a frame for that long, health says no_frames.
   std::chrono::milliseconds timeout{1000};
   hal::ReplayConfig replay;
   hal::SimulatedConfig simulated;

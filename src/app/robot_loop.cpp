@@ -1,6 +1,6 @@
 #include "app/robot_loop.h"
 
-#include <cstdio>
+#include <algorithm>
 #include <string>
 #include <thread>
 
@@ -8,6 +8,9 @@
 
 namespace wirepose::app {
 namespace {
+
+// Health, watchdog and signals are looked after between two waits for a frame.
+constexpr std::chrono::nanoseconds kLongestWait = std::chrono::milliseconds(250);
 
 // Between two attempts at a camera that is gone and says so without waiting.
 constexpr std::chrono::milliseconds kRetryPause{100};
@@ -25,11 +28,14 @@ RobotLoop::RobotLoop(hal::StereoCamera& camera, Recognizer& recognizer, Publishe
 
 void RobotLoop::Run(const std::atomic<bool>& stop) {
   SendHealthIfDue();
+  const std::chrono::nanoseconds wait = std::min(config_.frame_timeout, kLongestWait);
+  waiting_since_ = HealthMonitor::Clock::now();
   bool more = true;
   while (more && !stop && (config_.max_frames == 0 || frames_ < config_.max_frames)) {
-    Result<hal::FrameLease, hal::CameraError> lease = camera_.AcquireFrame(config_.frame_timeout);
+    Result<hal::FrameLease, hal::CameraError> lease = camera_.AcquireFrame(wait);
     if (lease) {
       HandleFrame(std::move(*lease));
+      waiting_since_ = HealthMonitor::Clock::now();
     } else {
       more = HandleCameraError(lease.error());
     }
@@ -70,7 +76,9 @@ bool RobotLoop::HandleCameraError(hal::CameraError error) {
       std::this_thread::sleep_for(kRetryPause);
       return true;
     case hal::CameraError::kTimeout:
-      health_.CameraFailed(error, camera_.detail());
+      if (HealthMonitor::Clock::now() - waiting_since_ >= config_.frame_timeout) {
+        health_.CameraFailed(error, camera_.detail());
+      }
       return true;
     default: {
       health_.CameraFailed(error, camera_.detail());

@@ -16,8 +16,8 @@
 namespace wirepose::app {
 
 struct RobotLoopConfig {
-  std::chrono::nanoseconds frame_timeout;
-  std::uint64_t max_frames = 0;  // frames of any status; 0: no end
+  std::chrono::nanoseconds frame_timeout;  // without a frame for that long: no_frames
+  std::uint64_t max_frames = 0;            // frames of any status; 0: no end
 };
 
 // Refers to its parts; they must outlive it. Run is called on one thread; allocates nothing while
@@ -48,6 +48,7 @@ class RobotLoop {
   HealthMonitor health_;
   StageTimer timer_;
   FrameReport report_;
+  HealthMonitor::Clock::time_point waiting_since_;  // the last thing the camera did
   std::uint64_t frames_ = 0;
 };
 

@@ -105,8 +105,8 @@ TEST_F(ConfigTest, RefusalsNameLineKeyAndRemedy) {
   EXPECT_EQ(Refusal("search_for: [one]\n"), ":1: search_for: not a model id; write whole numbers");
   EXPECT_EQ(Refusal("camera:\n  replay:\n    frame_rate_hz: nan\n"),
             ":3: camera.replay.frame_rate_hz: 'nan' is not a number from 0 to 1000");
-  EXPECT_EQ(Refusal("camera: { timeout_ms: 5000 }\n"),
-            ":1: camera.timeout_ms: '5000' is not a whole number from 10 to 1000");
+  EXPECT_EQ(Refusal("camera: { timeout_ms: 70000 }\n"),
+            ":1: camera.timeout_ms: '70000' is not a whole number from 10 to 60000");
   EXPECT_NE(Refusal("camera: { backend: kodak }\n").find("no camera 'kodak'"), std::string::npos);
   EXPECT_NE(Refusal("dds: { frame_id: " + std::string(64, 'x') + " }").find("longer than 63"),
             std::string::npos);

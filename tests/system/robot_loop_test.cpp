@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <deque>
 #include <memory>
 #include <thread>
@@ -83,9 +84,8 @@ class RobotLoopTest : public ::testing::Test {
     std::atomic<bool> done{false};
     std::thread listener([&] { Listen(*reader, done); });
     Service service;
-    const auto loop =
-        std::make_unique<RobotLoop>(*camera_, *recognizer_, *publisher_, service,
-                                    RobotLoopConfig{std::chrono::milliseconds(100), max_frames});
+    const auto loop = std::make_unique<RobotLoop>(*camera_, *recognizer_, *publisher_, service,
+                                                  RobotLoopConfig{timeout_, max_frames});
     try {
       loop->Run(stop_);
     } catch (const WorkFailed& e) {
@@ -127,6 +127,7 @@ class RobotLoopTest : public ::testing::Test {
   std::unique_ptr<Recognizer> recognizer_ = std::make_unique<Recognizer>();
   std::unique_ptr<Publisher> publisher_ = std::make_unique<Publisher>();
   std::atomic<bool> stop_{false};
+  std::chrono::milliseconds timeout_{50};
   std::vector<wirepose_HealthState> states_;
   std::uint64_t good_ = 0, damaged_ = 0, frames_ = 0;
   std::string failure_;
@@ -147,6 +148,13 @@ TEST_F(RobotLoopTest, GoesOnThroughEveryKindOfTrouble) {
                                   wirepose_BAD_FRAMES, wirepose_RUNNING, wirepose_CAMERA_LOST,
                                   wirepose_RUNNING, wirepose_STOPPED}));
   EXPECT_EQ(camera_->leased, 0);
+}
+
+TEST_F(RobotLoopTest, SilenceCountsOnlyAfterTheTimeout) {
+  timeout_ = std::chrono::seconds(20);
+  Run({FrameStatus::kGood, CameraError::kTimeout, CameraError::kTimeout, FrameStatus::kGood});
+  EXPECT_EQ(std::count(states_.begin(), states_.end(), wirepose_NO_FRAMES), 0);
+  EXPECT_EQ(good_, 2u);
 }
 
 TEST_F(RobotLoopTest, EndsOnWhatWaitingCannotMend) {

@@ -122,6 +122,24 @@ TEST_F(WireposedTest, EndsWithTheRecording) {
   EXPECT_NE(robot.Err().find("stopped after 3 frames"), std::string::npos) << robot.Err();
 }
 
+TEST_F(WireposedTest, SimulatedCameraRunsAndStopsInTheMiddle) {
+  WriteDataset(1);  // for the small rig's calib.yaml
+  const std::string config = WriteConfig(
+      "camera:\n  backend: simulated\n  timeout_ms: 30000\n"
+      "  simulated: { meshes: " +
+      std::filesystem::path(WIREPOSE_MESH).parent_path().string() +
+      ", calibration: data/calib.yaml, frames: 0, samples_per_pixel: 4, truth_file: truth.jsonl }\n"
+      "dds: { domain: " +
+      domain_ + ", loopback: true }\nmodels: [parcel_box.wpm]\n");
+  Process robot(folder_, "robot", Robot(config));
+  Process watch(folder_, "watch", Watch({"--frames", "2", "--timeout", "60"}));
+  ASSERT_EQ(watch.Wait(std::chrono::seconds(90)), 0) << watch.Err() << robot.Err();
+  robot.Signal(SIGTERM);
+  EXPECT_EQ(robot.Wait(), 0) << robot.Err();
+  EXPECT_EQ(Messages(watch, "health").back()["camera"], "simulated");
+  EXPECT_GT(std::filesystem::file_size(folder_ / "truth.jsonl"), 0u);
+}
+
 // systemd's protocol: datagrams of NAME=value lines on the socket named in NOTIFY_SOCKET.
 TEST_F(WireposedTest, TellsSystemdReadyAliveAndStopping) {
   WriteDataset(2);
