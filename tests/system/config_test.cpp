@@ -1,0 +1,150 @@
+#include "app/config.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "app/failure.h"
+
+namespace wirepose::app {
+namespace {
+
+class ConfigTest : public ::testing::Test {
+ protected:
+  ConfigTest()
+      : file_(std::filesystem::temp_directory_path() /
+              ("wirepose_config_" + std::to_string(getpid()) + ".yaml")) {}
+  ~ConfigTest() override { std::filesystem::remove(file_); }
+
+  Config Load(const std::string& text) const {
+    std::ofstream(file_, std::ios::binary) << text;
+    return LoadConfig(file_);
+  }
+  // The message without the file's name, or "accepted".
+  std::string Refusal(const std::string& text) const {
+    try {
+      (void)Load(text);
+      return "accepted";
+    } catch (const UsageError& e) {
+      const std::string what = e.what();
+      EXPECT_EQ(what.rfind(file_.string(), 0), 0u) << what;
+      EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+      return what.substr(file_.string().size());
+    }
+  }
+
+  std::filesystem::path file_;
+};
+
+TEST_F(ConfigTest, EmptyFileGivesDefaults) {
+  const Config config = Load("");
+  EXPECT_EQ(config.camera.backend, CameraBackend::kUnset);
+  EXPECT_EQ(config.bus.domain, 0u);
+  EXPECT_FALSE(config.bus.loopback);
+  EXPECT_EQ(config.frame_id, "wirepose_left_optical");
+  EXPECT_TRUE(config.models.empty());
+}
+
+TEST_F(ConfigTest, ReadsEveryKey) {
+  const Config config = Load(R"(
+camera:
+  backend: simulated
+  timeout_ms: 250
+  replay: { data_set: /data/set, split: train, scene: 4, loop: true, frame_rate_hz: 12.5 }
+  simulated: { meshes: meshes, calibration: rig.yaml, seed: 9, frames: 100, frame_rate_hz: 15, samples_per_pixel: 25, truth_file: truth.jsonl }
+dds: { domain: 42, loopback: true, frame_id: eye }
+models: [a.wpm, /b]
+search_for: [3, 1]
+)");
+  const std::filesystem::path folder = file_.parent_path();
+  EXPECT_EQ(config.camera.backend, CameraBackend::kSimulated);
+  EXPECT_EQ(config.camera.timeout.count(), 250);
+  EXPECT_EQ(config.camera.replay.root, "/data/set");
+  EXPECT_EQ(config.camera.replay.split, "train");
+  EXPECT_EQ(config.camera.replay.scene_id, 4);
+  EXPECT_TRUE(config.camera.replay.loop);
+  EXPECT_EQ(config.camera.replay.frame_rate_hz, 12.5);
+  EXPECT_EQ(config.camera.simulated.mesh_dir, folder / "meshes");
+  EXPECT_EQ(config.camera.simulated.calibration_path, folder / "rig.yaml");
+  EXPECT_EQ(config.camera.simulated.seed, 9u);
+  EXPECT_EQ(config.camera.simulated.frame_count, 100u);
+  EXPECT_EQ(config.camera.simulated.frame_rate_hz, 15);
+  EXPECT_EQ(config.camera.simulated.samples_per_pixel, 25);
+  EXPECT_EQ(config.camera.simulated.truth_path, folder / "truth.jsonl");
+  EXPECT_EQ(config.bus.domain, 42u);
+  EXPECT_TRUE(config.bus.loopback);
+  EXPECT_EQ(config.frame_id, "eye");
+  EXPECT_EQ(config.models, (std::vector<std::filesystem::path>{folder / "a.wpm", "/b"}));
+  EXPECT_EQ(config.search_for, (std::vector<std::uint32_t>{3, 1}));
+}
+
+TEST_F(ConfigTest, TheExampleIsValid) {
+  EXPECT_EQ(LoadConfig(WIREPOSE_EXAMPLE_CONFIG).camera.backend, CameraBackend::kSimulated);
+}
+
+TEST_F(ConfigTest, RefusalsNameLineKeyAndRemedy) {
+  EXPECT_EQ(Refusal("a: 1\n"), ":1: a: unknown key; known here: camera, dds, models, search_for");
+  EXPECT_EQ(Refusal("dds:\n  domain: 5\n  domian: 6\n"),
+            ":3: dds.domian: unknown key; known here: domain, frame_id, loopback");
+  EXPECT_EQ(Refusal("dds:\n  domain: 231\n"),
+            ":2: dds.domain: '231' is not a whole number from 0 to 230");
+  EXPECT_EQ(Refusal("dds:\n  domain: -1\n"),
+            ":2: dds.domain: '-1' is not a whole number from 0 to 230");
+  EXPECT_EQ(Refusal("dds:\n  domain: 1x\n"),
+            ":2: dds.domain: '1x' is not a whole number from 0 to 230");
+  EXPECT_EQ(Refusal("dds:\n  domain: [1]\n"), ":2: dds.domain: needs a whole number");
+  EXPECT_EQ(Refusal("\n\ndds:\n  loopback: maybe\n"),
+            ":4: dds.loopback: 'maybe' is not a truth value; write true or false");
+  EXPECT_EQ(Refusal("dds: { domain: 1, domain: 2 }\n"),
+            ":1: dds.domain: stands here twice; remove one");
+  EXPECT_EQ(Refusal("dds: 7\n"), ":1: dds: not a mapping; write 'key: value' lines");
+  EXPECT_EQ(Refusal("models: a.wpm\n"), ":1: models: needs a list of paths, as [a, b]");
+  EXPECT_EQ(Refusal("search_for: [one]\n"), ":1: search_for: not a model id; write whole numbers");
+  EXPECT_EQ(Refusal("camera:\n  replay:\n    frame_rate_hz: nan\n"),
+            ":3: camera.replay.frame_rate_hz: 'nan' is not a number from 0 to 1000");
+  EXPECT_EQ(Refusal("camera: { timeout_ms: 70000 }\n"),
+            ":1: camera.timeout_ms: '70000' is not a whole number from 10 to 60000");
+  EXPECT_NE(Refusal("camera: { backend: kodak }\n").find("no camera 'kodak'"), std::string::npos);
+  EXPECT_NE(Refusal("dds: { frame_id: " + std::string(64, 'x') + " }").find("longer than 63"),
+            std::string::npos);
+}
+
+TEST_F(ConfigTest, WhatIsNotYamlIsRefusedWithItsLine) {
+  EXPECT_EQ(Refusal("dds:\n  domain: [1, 2\nmodels: }\n").rfind(":", 0), 0u);
+  EXPECT_NE(Refusal("dds: *nowhere\n").find("not YAML"), std::string::npos);
+  EXPECT_EQ(Refusal("- a\n- b\n"), ":1: not a mapping; write 'key: value' lines");
+  EXPECT_EQ(Refusal("just words\n"), ":1: not a mapping; write 'key: value' lines");
+  EXPECT_NE(Refusal(std::string(2 << 20, '#')).find("larger than 1 MiB"), std::string::npos);
+}
+
+// Random damage to a good file: accepted or refused, never a crash or another kind of exception.
+TEST_F(ConfigTest, DamagedFilesNeverCrash) {
+  std::ostringstream example;
+  example << std::ifstream(WIREPOSE_EXAMPLE_CONFIG).rdbuf();
+  const std::string good = example.str();
+  ASSERT_FALSE(good.empty());
+  std::mt19937 random(9);
+  for (int i = 0; i < 400; ++i) {
+    std::string text = good;
+    for (unsigned n = 1 + random() % 4; n > 0; --n) {
+      const std::size_t at = random() % text.size();
+      switch (random() % 3) {
+        case 0:
+          text[at] = static_cast<char>(random());
+          break;
+        case 1:
+          text.erase(at, 1 + random() % 20);
+          break;
+        default:
+          text.insert(at, 1, "{}[]:&*!|>'\"#-\t\n%@"[random() % 18]);
+      }
+    }
+    (void)Refusal(text);
+  }
+}
+
+}  // namespace
+}  // namespace wirepose::app
