@@ -4,3 +4,6 @@ find_package(fmt REQUIRED)
 wirepose_test(eval_metrics_test SOURCES eval_metrics_test.cpp eval_dataset.cpp LIBRARIES wirepose_evaluation fmt::fmt)
 target_compile_definitions(eval_metrics_test PRIVATE
   WIREPOSE_SCORE_DEFAULT="${PROJECT_SOURCE_DIR}/../shared/tools/score.py")
+
+find_package(OpenCV REQUIRED COMPONENTS core imgcodecs)
+wirepose_test(overlay_test SOURCES overlay_test.cpp LIBRARIES wirepose_overlay opencv_core opencv_imgcodecs)
