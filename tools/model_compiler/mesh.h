@@ -1,0 +1,24 @@
+// A triangle mesh on its way from a file to a line model.
+#ifndef WIREPOSE_TOOLS_MODEL_COMPILER_MESH_H_
+#define WIREPOSE_TOOLS_MODEL_COMPILER_MESH_H_
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace wirepose::tools {
+
+// Metres, model frame. Triangles are counter-clockwise seen from outside once OrientOutward has run.
+struct Mesh {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<int, 3>> triangles;
+
+  // Not normalised: twice the area, along the outward normal.
+  [[nodiscard]] Eigen::Vector3d AreaNormal(const std::array<int, 3>& t) const {
+    return (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
+  }
+};
+
+}  // namespace wirepose::tools
+
+#endif  // WIREPOSE_TOOLS_MODEL_COMPILER_MESH_H_
