@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "evaluation/metrics.h"
+#include "tools/evaluation/metrics.h"
 
 namespace wirepose::evaluation::testing {
 

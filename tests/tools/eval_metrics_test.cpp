@@ -1,5 +1,5 @@
 // The measures against hand-computed cases and against an independent scorer, where one is at hand.
-#include "evaluation/metrics.h"
+#include "tools/evaluation/metrics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,10 +14,10 @@
 #include <nlohmann/json.hpp>
 
 #include "eval_dataset.h"
-#include "evaluation/metrics_json.h"
-#include "evaluation/ply_vertices.h"
-#include "evaluation/pose_error.h"
-#include "evaluation/results_csv.h"
+#include "tools/evaluation/metrics_json.h"
+#include "tools/evaluation/ply_vertices.h"
+#include "tools/evaluation/pose_error.h"
+#include "tools/evaluation/results_csv.h"
 
 namespace wirepose::evaluation {
 namespace {

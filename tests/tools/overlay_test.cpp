@@ -1,5 +1,5 @@
 // Hidden lines against the geometry of a box; the picture against what must be in it.
-#include "overlay/overlay.h"
+#include "tools/overlay/overlay.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "box_model.h"
-#include "overlay/visible_edges.h"
+#include "tools/overlay/visible_edges.h"
 
 namespace wirepose::overlay {
 namespace {
@@ -110,8 +110,7 @@ TEST_F(OverlayTest, OfNothingIsTheImageTwice) {
 TEST_F(OverlayTest, ShowsLinesBySideAndDepth) {
   input_.segments = segments_;
   input_.lines = lines_;
-  const LineSetMember member{3, 0};
-  input_.line_sets = {&member, 1};
+  input_.line_sets = {{3, 0}};
   const cv::Mat image = DrawOverlay(input_);
   // The line's centre falls between two rows of the enlarged picture: both are half grey.
   EXPECT_GT(image.at<cv::Vec3b>(201, 300)[0], 110) << "a segment without depth is grey";

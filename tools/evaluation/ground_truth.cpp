@@ -1,4 +1,4 @@
-#include "evaluation/ground_truth.h"
+#include "tools/evaluation/ground_truth.h"
 
 #include <algorithm>
 #include <charconv>
@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "evaluation/ply_vertices.h"
-#include "evaluation/pose_error.h"
+#include "tools/evaluation/ply_vertices.h"
+#include "tools/evaluation/pose_error.h"
 
 namespace wirepose::evaluation {
 namespace {

@@ -1,4 +1,4 @@
-#include "evaluation/metrics.h"
+#include "tools/evaluation/metrics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "evaluation/pose_error.h"
+#include "tools/evaluation/pose_error.h"
 
 namespace wirepose::evaluation {
 namespace {

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/ground_truth.h"
+#include "tools/evaluation/ground_truth.h"
 
 namespace wirepose::evaluation {
 

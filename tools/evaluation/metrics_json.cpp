@@ -1,4 +1,4 @@
-#include "evaluation/metrics_json.h"
+#include "tools/evaluation/metrics_json.h"
 
 #include <algorithm>
 #include <numeric>

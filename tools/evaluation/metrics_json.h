@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "evaluation/metrics.h"
+#include "tools/evaluation/metrics.h"
 
 namespace wirepose::evaluation {
 

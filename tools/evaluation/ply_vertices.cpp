@@ -1,4 +1,4 @@
-#include "evaluation/ply_vertices.h"
+#include "tools/evaluation/ply_vertices.h"
 
 #include <array>
 #include <bit>

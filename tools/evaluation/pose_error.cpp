@@ -1,4 +1,4 @@
-#include "evaluation/pose_error.h"
+#include "tools/evaluation/pose_error.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

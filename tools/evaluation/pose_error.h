@@ -2,7 +2,7 @@
 #ifndef WIREPOSE_TOOLS_EVALUATION_POSE_ERROR_H_
 #define WIREPOSE_TOOLS_EVALUATION_POSE_ERROR_H_
 
-#include "evaluation/ground_truth.h"
+#include "tools/evaluation/ground_truth.h"
 
 namespace wirepose::evaluation {
 

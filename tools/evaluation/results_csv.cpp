@@ -1,4 +1,4 @@
-#include "evaluation/results_csv.h"
+#include "tools/evaluation/results_csv.h"
 
 #include <charconv>
 #include <fstream>

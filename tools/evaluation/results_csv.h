@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "evaluation/metrics.h"
+#include "tools/evaluation/metrics.h"
 
 namespace wirepose::evaluation {
 

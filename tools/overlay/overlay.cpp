@@ -1,4 +1,4 @@
-#include "overlay/overlay.h"
+#include "tools/overlay/overlay.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "overlay/visible_edges.h"
+#include "tools/overlay/visible_edges.h"
 
 namespace wirepose::overlay {
 namespace {

@@ -40,7 +40,7 @@ struct OverlayInput {
   RectifiedCamera camera;
   std::span<const Segment2> segments;
   std::span<const Line3> lines;
-  std::span<const LineSetMember> line_sets;
+  std::vector<LineSetMember> line_sets;
   std::vector<OverlayObject> objects;
   std::string caption;  // bottom line, for example scene and image
 };

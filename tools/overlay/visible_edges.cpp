@@ -1,4 +1,4 @@
-#include "overlay/visible_edges.h"
+#include "tools/overlay/visible_edges.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
