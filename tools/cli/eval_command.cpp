@@ -35,7 +35,7 @@ void CheckWritable(const fs::path& file) {
                    ": cannot be written; name a file in an existing folder you may write to");
 }
 
-void DrawFrame(const evaluation::FrameView& view, const fs::path& folder) {
+void DrawFrame(const evaluation::FrameView& view, const EvalArguments& arguments) {
   overlay::OverlayInput input = LinesOf(view.recognizer);
   for (const dataset::TrueInstance& truth : view.entry.gt) {
     const ModelView* model = view.models.Find(static_cast<std::uint32_t>(truth.obj_id));
@@ -44,7 +44,7 @@ void DrawFrame(const evaluation::FrameView& view, const fs::path& folder) {
   }
   for (const Detection& d : view.result.detections) {
     const ModelView* model = view.models.Find(d.model_id);
-    if (model == nullptr) continue;
+    if (model == nullptr || static_cast<double>(d.score) < arguments.options.min_score) continue;
     AddObject(view.recognizer, *model, d.T_camera_model, overlay::PoseKind::kFound,
               fmt::format("{} {:.2f}", model->name, d.score), input);
   }
@@ -71,7 +71,7 @@ void RunEval(const EvalArguments& arguments) {
   if (!arguments.json.empty()) CheckWritable(arguments.json);
   const auto observer = [&](const evaluation::FrameView& view) -> Result<void, std::string> {
     ShowProgress(view);
-    if (!arguments.overlay.empty()) DrawFrame(view, arguments.overlay);
+    if (!arguments.overlay.empty()) DrawFrame(view, arguments);
     return {};
   };
   const auto evaluation = evaluation::Evaluate(arguments.options, observer);
