@@ -116,10 +116,13 @@ InstanceOutcome Outcome(const Encounter& e, std::size_t j, std::optional<std::si
   outcome.image_id = e.frame->image_id;
   outcome.object_id = e.object_id;
   outcome.visible_fraction = e.instances[j]->visible_fraction;
+  outcome.truth = e.instances[j]->T_camera_model;
   outcome.hit = detection.has_value();
   outcome.best_mssd_mm = BestMssd(e, j);
   if (!detection) return outcome;
   const PoseError& error = e.errors[*detection][j];
+  outcome.truth = error.nearest_truth;
+  outcome.estimate = e.detections[*detection]->T_camera_model;
   outcome.score = e.detections[*detection]->score;
   outcome.translation_mm = error.translation_mm;
   outcome.rotation_deg = error.rotation_deg;

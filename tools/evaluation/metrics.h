@@ -71,8 +71,10 @@ struct InstanceOutcome {
   int image_id = 0;
   int object_id = 0;
   double visible_fraction = 1;
+  RigidMm truth;  // of its symmetric poses the one nearest to the hit
   bool hit = false;
-  double score = 0;  // of the hit; as the two below only valid when `hit`
+  RigidMm estimate;  // of the hit; as the three below only valid when `hit`
+  double score = 0;
   double translation_mm = 0;
   double rotation_deg = 0;
   std::optional<double>
