@@ -97,7 +97,8 @@ class StereoCamera {
 
   // Valid from a successful Open on.
   [[nodiscard]] const StereoCalibration& calibration() const { return calibration_; }
-  // File, place and remedy of the last error, one line; empty after success. Valid until the next call.
+  // File, place and remedy of the last error, or why the frame just acquired is not kGood, in one line; else empty.
+  // Valid until the next call.
   [[nodiscard]] std::string_view detail() const { return DoDetail(); }
   // Short name of the backend for logs and health: "replay", "simulated", "libcamera".
   [[nodiscard]] std::string_view name() const { return DoName(); }

@@ -3,12 +3,14 @@
 #define WIREPOSE_TOOLS_MODEL_COMPILER_MESH_H_
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <vector>
 
 namespace wirepose::tools {
 
-// Metres, model frame. Triangles are counter-clockwise seen from outside once OrientOutward has run.
+// Metres, model frame. Triangles are counter-clockwise seen from outside once OrientOutward has
+// run.
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 3>> triangles;

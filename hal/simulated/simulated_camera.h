@@ -1,0 +1,80 @@
+// The simulator as a camera. Host only: it links Embree.
+#ifndef WIREPOSE_HAL_SIMULATED_SIMULATED_CAMERA_H_
+#define WIREPOSE_HAL_SIMULATED_SIMULATED_CAMERA_H_
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hal/stereo_camera.h"
+
+namespace wirepose::hal {
+
+struct SimulatedConfig {
+  std::uint64_t seed = 1;          // of the scenario, the camera's path and the noise
+  std::uint64_t frame_count = 30;  // length of the stream; 0: endless
+  std::filesystem::path mesh_dir;  // the objects: sim/target_mesh.h says what is read
+  double frame_rate_hz = 30;       // of the capture stamps and of the camera's motion, 1..1000
+  int samples_per_pixel = 16;      // 4, 9, 16, 25 or 36
+  // When set, one JSON object a line for every frame, written before the frame is given out:
+  // {"sequence":0,"capture_time_ns":0,"objects":[{"obj_id":1,"name":"parcel_box","R":[9],"t":[3],"visib_fract":0.9}]}
+  // R (row-major) and t [m] map the model to the raw left camera.
+  std::filesystem::path truth_path;
+};
+
+struct SimulatedObject {
+  int obj_id = 0;
+  std::string name;
+  Pose T_camera_model;     // raw left camera; metres
+  double visib_fract = 0;  // as BOP defines it
+};
+
+struct SimulatedTruth {
+  std::uint64_t sequence = 0;
+  CaptureTime capture_time{};
+  std::vector<SimulatedObject> objects;
+};
+
+// A camera that moves slowly through sim/'s kitchen. A thread of its own renders ahead into four
+// buffers, allocated by Open; frames come as fast as they are rendered and none is dropped. Capture
+// times are sequence / frame_rate_hz. The same configuration gives the same frames, stamps and
+// bytes each time; Start begins at the first frame.
+//
+// Open: kNotFound (no mesh folder), kBadData (no usable mesh; truth file not writable),
+// kUnsupported (configuration). AcquireFrame: kTimeout (still rendering), kNoBuffer, kEndOfStream,
+// kBadData (the truth file could not be written).
+class SimulatedCamera final : public StereoCamera {
+ public:
+  static constexpr std::uint32_t kBuffers = 4;
+
+  explicit SimulatedCamera(SimulatedConfig config);
+  ~SimulatedCamera() override;
+
+  // The truth of one of the last 64 frames that were rendered since Start; nothing for any other.
+  // Any thread.
+  [[nodiscard]] std::optional<SimulatedTruth> Truth(std::uint64_t sequence) const;
+
+ private:
+  class Worker;
+
+  CameraError DoOpen(StereoCalibration& calibration) override;
+  CameraError DoStart() override;
+  Result<Captured, CameraError> DoAcquire(std::chrono::nanoseconds timeout) override;
+  void DoRelease(std::uint32_t buffer) override;
+  CameraError DoStop() override;
+  void DoClose() override;
+  [[nodiscard]] std::string_view DoDetail() const override { return detail_; }
+  [[nodiscard]] std::string_view DoName() const override { return "simulated"; }
+
+  SimulatedConfig config_;
+  std::unique_ptr<Worker> worker_;  // while open
+  std::string detail_;
+};
+
+}  // namespace wirepose::hal
+
+#endif  // WIREPOSE_HAL_SIMULATED_SIMULATED_CAMERA_H_
