@@ -49,8 +49,8 @@ void DrawFrame(const evaluation::FrameView& view, const EvalArguments& arguments
               fmt::format("{} {:.2f}", model->name, d.score), input);
   }
   input.caption = fmt::format("scene {} image {}", view.entry.scene_id, view.entry.im_id);
-  WriteOverlay(input,
-               folder / fmt::format("{:06d}_{:06d}.png", view.entry.scene_id, view.entry.im_id));
+  WriteOverlay(input, arguments.overlay /
+                          fmt::format("{:06d}_{:06d}.png", view.entry.scene_id, view.entry.im_id));
 }
 
 void ShowProgress(const evaluation::FrameView& view) {

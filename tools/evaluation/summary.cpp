@@ -63,7 +63,8 @@ std::string Summarize(const Evaluation& evaluation) {
   for (const auto& [id, score] : m.per_object) text += Row(std::to_string(id), score, m.frames);
   text += Row("all", m.total, m.frames);
   const auto json = ToJson(evaluation);
-  text += "\n" + StageTable(json.at("stages"));
+  text += '\n';
+  text += StageTable(json.at("stages"));
   for (const auto& [name, list] : json.at("lists").items()) {
     if (list.at("dropped").get<std::uint64_t>() == 0) continue;
     text += fmt::format("list {} was full ({}): {} elements dropped\n", name,
