@@ -3,16 +3,20 @@
 #include <exception>
 
 #include "command.h"
+#include "eval_command.h"
 #include "model_command.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"Wirepose: model-based 3D object recognition from line features"};
   app.require_subcommand(1);
+  wirepose::cli::AddEvalCommand(app);
   wirepose::cli::AddModelCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help
+    std::fprintf(stderr, "wirepose: %s; see 'wirepose --help'\n", e.what());
+    return 2;
   } catch (const wirepose::cli::UsageError& e) {
     std::fprintf(stderr, "wirepose: %s\n", e.what());
     return 2;
