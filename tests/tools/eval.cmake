@@ -7,3 +7,9 @@ target_compile_definitions(eval_metrics_test PRIVATE
 
 find_package(OpenCV REQUIRED COMPONENTS core imgcodecs)
 wirepose_test(overlay_test SOURCES overlay_test.cpp LIBRARIES wirepose_overlay opencv_core opencv_imgcodecs)
+
+find_package(nlohmann_json REQUIRED)
+wirepose_test(eval_cli_test SOURCES eval_cli_test.cpp eval_dataset.cpp
+  LIBRARIES wirepose_evaluation nlohmann_json::nlohmann_json fmt::fmt)
+target_compile_definitions(eval_cli_test PRIVATE WIREPOSE_PROGRAM="$<TARGET_FILE:wirepose>")
+add_dependencies(eval_cli_test wirepose)

@@ -147,7 +147,8 @@ void RunCompare(const CompareArguments& arguments) {
   if (!truth) throw WorkFailed(truth.error());
   const auto received = evaluation::ReadReceivedStream(arguments.received);
   if (!received) throw WorkFailed(received.error());
-  evaluation::KeepReceivedFrames(*received, *truth);
+  // The subscriber may have joined late and left early.
+  evaluation::KeepFrames(received->frames, *truth);
   if (truth->frames.empty()) {
     throw WorkFailed(
         fmt::format("{}: no received frame is in it; truth and messages must be of one run",

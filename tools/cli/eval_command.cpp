@@ -99,7 +99,8 @@ void AddEvalCommand(CLI::App& app) {
   eval->add_option("--out", arguments->out, "Detections, as BOP results (CSV)")->required();
   eval->add_option("--json", arguments->json, "All measures, stage times and list use (JSON)");
   eval->add_option("--overlay", arguments->overlay, "Folder for a picture of every frame");
-  eval->add_option("--limit", arguments->options.frame_limit, "Stop after so many frames (0: all)");
+  eval->add_option("--limit", arguments->options.frame_limit, "Stop after so many frames (0: all)")
+      ->check(CLI::NonNegativeNumber);
   eval->add_option("--min-score", arguments->options.min_score, "Drop detections below this score");
   eval->callback([arguments] { RunEval(*arguments); });
 }

@@ -1,5 +1,8 @@
 #include "tools/evaluation/evaluate.h"
 
+#include <set>
+#include <utility>
+
 #include <fmt/format.h>
 
 namespace wirepose::evaluation {
@@ -68,18 +71,6 @@ Outcome ProcessFrame(const dataset::FrameEntry& entry, const StereoCalibration& 
   return Error(fmt::format("{}: {}", entry.left_path.string(), Describe(error)));
 }
 
-Estimate ToEstimate(const Detection& detection, const dataset::FrameEntry& entry, double time_s) {
-  Estimate e;
-  e.scene_id = entry.scene_id;
-  e.image_id = entry.im_id;
-  e.object_id = static_cast<int>(detection.model_id);
-  e.score = static_cast<double>(detection.score);
-  e.T_camera_model = {detection.T_camera_model.R, detection.T_camera_model.t * kMmPerMetre};
-  e.time_s = time_s;
-  e.covariance = detection.covariance;
-  return e;
-}
-
 void Record(const dataset::FrameEntry& entry, const RecognitionResult& result,
             const FrameTimes& times, double min_score, Evaluation& evaluation) {
   FrameRecord& record = evaluation.frames.emplace_back();
@@ -110,13 +101,28 @@ Result<Inputs, std::string> ReadInputs(const EvaluationOptions& options) {
   if (!models) return Error(models.error());
   const Outcome known = CheckIds(*models, *truth, options.dataset);
   if (!known) return Error(known.error());
-  if (options.frame_limit > 0 && set->frames.size() > options.frame_limit)
+  if (options.frame_limit > 0 && set->frames.size() > options.frame_limit) {
     set->frames.resize(options.frame_limit);
-  if (options.frame_limit > 0) KeepFirstFrames(*truth, options.frame_limit);
+    std::set<std::pair<int, int>> kept;
+    for (const dataset::FrameEntry& f : set->frames) kept.insert({f.scene_id, f.im_id});
+    KeepFrames(kept, *truth);
+  }
   return Inputs{std::move(*set), std::move(*truth), std::move(*models)};
 }
 
 }  // namespace
+
+Estimate ToEstimate(const Detection& detection, const dataset::FrameEntry& entry, double time_s) {
+  Estimate e;
+  e.scene_id = entry.scene_id;
+  e.image_id = entry.im_id;
+  e.object_id = static_cast<int>(detection.model_id);
+  e.score = static_cast<double>(detection.score);
+  e.T_camera_model = {detection.T_camera_model.R, detection.T_camera_model.t * kMmPerMetre};
+  e.time_s = time_s;
+  e.covariance = detection.covariance;
+  return e;
+}
 
 Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options,
                                          const FrameObserver& observer) {

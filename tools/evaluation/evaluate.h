@@ -50,6 +50,9 @@ struct FrameView {
 };
 using FrameObserver = std::function<Result<void, std::string>(const FrameView&)>;
 
+// A detection as a row of a results file: metres become millimetres, the frame is the same.
+Estimate ToEstimate(const Detection& detection, const dataset::FrameEntry& entry, double time_s);
+
 // Processes the frames in order, each once, with the one static Recognizer of this function: not
 // reentrant. Stops at the first error, one line that names file, place and remedy: calibration,
 // model, image or truth missing or malformed, an image that is not of the calibrated size, a model

@@ -163,7 +163,10 @@ std::vector<InstanceTruth> ReadInstances(const Place& gt, const std::optional<Pl
 }
 
 void ReadScene(const fs::path& scene, int scene_id, GroundTruth& truth) {
-  const std::string suffix = fs::exists(scene / "scene_camera_cam1.json") ? "_cam1" : "";
+  // A stereo scene whose camera file is lost must be told so by that file's name.
+  const bool stereo =
+      fs::exists(scene / "gray_cam1") || fs::exists(scene / "scene_camera_cam1.json");
+  const std::string suffix = stereo ? "_cam1" : "";
   const SceneFiles files(scene, suffix);
   const Json cameras = ReadJson(files.camera);
   const Json gts = ReadJson(files.gt);
@@ -227,8 +230,10 @@ Result<GroundTruth, std::string> ReadGroundTruth(const fs::path& dataset) {
   }
 }
 
-void KeepFirstFrames(GroundTruth& truth, std::size_t count) {
-  if (truth.frames.size() > count) truth.frames.resize(count);
+void KeepFrames(const std::set<std::pair<int, int>>& listed, GroundTruth& truth) {
+  std::erase_if(truth.frames, [&](const FrameTruth& f) {
+    return !listed.contains({f.scene_id, f.image_id});
+  });
 }
 
 }  // namespace wirepose::evaluation

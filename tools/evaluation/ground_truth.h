@@ -3,10 +3,11 @@
 #ifndef WIREPOSE_TOOLS_EVALUATION_GROUND_TRUTH_H_
 #define WIREPOSE_TOOLS_EVALUATION_GROUND_TRUTH_H_
 
-#include <cstddef>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -61,8 +62,9 @@ struct GroundTruth {
 // std::bad_alloc.
 Result<GroundTruth, std::string> ReadGroundTruth(const std::filesystem::path& dataset);
 
-// The first `count` frames only: what an evaluation that was told to stop early must be judged by.
-void KeepFirstFrames(GroundTruth& truth, std::size_t count);
+// Keeps the frames whose (scene, image) is listed: an evaluation that saw only some frames must be
+// judged by them alone. O(frames * log listed).
+void KeepFrames(const std::set<std::pair<int, int>>& listed, GroundTruth& truth);
 
 }  // namespace wirepose::evaluation
 

@@ -110,20 +110,14 @@ Result<Received, std::string> ReadReceivedStream(const fs::path& file) {
   const Outcome read = ForEachLine(file, "'wirepose watch --json'", [&](const Json& line) {
     if (!line.contains("frame_sequence")) return;
     const int sequence = line.at("frame_sequence").get<int>();
-    received.sequences.push_back(sequence);
+    received.frames.insert({0, sequence});
     for (const Json& d : line.at("detections"))
       received.estimates.push_back(ReadDetection(d, sequence));
   });
   if (!read) return unexpected<std::string>(read.error());
-  if (!received.sequences.empty()) return received;
+  if (!received.frames.empty()) return received;
   return unexpected<std::string>(
       file.string() + ": no message of wirepose/recognition; is wireposed running on this domain?");
-}
-
-void KeepReceivedFrames(const Received& received, GroundTruth& truth) {
-  std::erase_if(truth.frames, [&](const FrameTruth& f) {
-    return std::ranges::find(received.sequences, f.image_id) == received.sequences.end();
-  });
 }
 
 }  // namespace wirepose::evaluation

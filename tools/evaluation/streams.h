@@ -4,8 +4,9 @@
 #define WIREPOSE_TOOLS_EVALUATION_STREAMS_H_
 
 #include <filesystem>
-#include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -24,13 +25,11 @@ Result<GroundTruth, std::string> ReadTruthStream(const std::filesystem::path& fi
 // What `wirepose watch --json` prints of the topic wirepose/recognition; lines of other topics are
 // passed over.
 struct Received {
-  std::vector<int> sequences;       // of every message, also of those without detection
+  // (0, sequence) of every message, also of those without detection.
+  std::set<std::pair<int, int>> frames;
   std::vector<Estimate> estimates;  // scene 0, image id = sequence
 };
 Result<Received, std::string> ReadReceivedStream(const std::filesystem::path& file);
-
-// Keeps the frames that were received: the subscriber may have joined late and left early.
-void KeepReceivedFrames(const Received& received, GroundTruth& truth);
 
 }  // namespace wirepose::evaluation
 
