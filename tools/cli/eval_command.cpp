@@ -100,7 +100,9 @@ void AddEvalCommand(CLI::App& app) {
   eval->add_option("--json", arguments->json, "All measures, stage times and list use (JSON)");
   eval->add_option("--overlay", arguments->overlay, "Folder for a picture of every frame");
   eval->add_option("--limit", arguments->options.frame_limit, "Stop after so many frames (0: all)")
-      ->check(CLI::NonNegativeNumber);
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? std::string("must not be negative") : std::string();
+      });
   eval->add_option("--min-score", arguments->options.min_score, "Drop detections below this score");
   eval->callback([arguments] { RunEval(*arguments); });
 }
