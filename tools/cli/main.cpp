@@ -5,12 +5,14 @@
 #include "command.h"
 #include "eval_command.h"
 #include "model_command.h"
+#include "watch_command.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"Wirepose: model-based 3D object recognition from line features"};
   app.require_subcommand(1);
   wirepose::cli::AddEvalCommand(app);
   wirepose::cli::AddModelCommand(app);
+  wirepose::cli::AddWatchCommand(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -50,6 +50,15 @@ ModelLineSet DescribeSet(const std::vector<Crease>& creases, LineSetKind kind, i
           static_cast<std::uint32_t>(first_member), static_cast<std::uint32_t>(members.size())};
 }
 
+// The longest creases that at least one aspect shows.
+std::vector<int> BaseLines(const std::vector<std::vector<bool>>& co_visible) {
+  std::vector<int> bases;
+  for (std::size_t e = 0; e < co_visible.size() && bases.size() < kMaxLineSetEdges; ++e) {
+    if (co_visible[e][e]) bases.push_back(static_cast<int>(e));
+  }
+  return bases;
+}
+
 }  // namespace
 
 ModelSetMember ParameterVector(const Mesh& mesh, const std::vector<Crease>& creases, int base,
@@ -71,10 +80,10 @@ ModelSetMember ParameterVector(const Mesh& mesh, const std::vector<Crease>& crea
 LineSets MakeLineSets(const Mesh& mesh, const std::vector<Crease>& creases,
                       const std::vector<std::vector<bool>>& co_visible, double parallel_angle_rad) {
   LineSets result;
-  const int bases = static_cast<int>(std::min(creases.size(), kMaxLineSetEdges));
-  for (int base = 0; base < bases; ++base) {
+  const std::vector<int> bases = BaseLines(co_visible);
+  for (const int base : bases) {
     std::vector<ModelSetMember> parallel, intersecting;
-    for (int other = 0; other < bases; ++other) {
+    for (const int other : bases) {
       if (other == base || !co_visible[base][other]) continue;
       const ModelSetMember v = ParameterVector(mesh, creases, base, other, parallel_angle_rad);
       (static_cast<double>(v.angle_rad) <= parallel_angle_rad ? parallel : intersecting)

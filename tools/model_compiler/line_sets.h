@@ -20,11 +20,12 @@ struct LineSets {
 ModelSetMember ParameterVector(const Mesh& mesh, const std::vector<Crease>& creases, int base,
                                int member, double parallel_angle_rad);
 
-// For each of the longest kMaxLineSetEdges creases (they come first) a parallel and an intersecting
-// set over the others of them that some aspect shows together with it; empty sets are left out.
-// `co_visible[i][j]` says so for creases i, j. An intersecting set also holds lines without a
-// common corner: their true end-point distance is in the vector, and delta_d (eq. 5) stays a matter
-// of matching. Members come by rising end-point distance, so corners come first.
+// For each of the longest kMaxLineSetEdges creases that an aspect shows, a parallel and an
+// intersecting set over the others of them that some aspect shows together with it; empty sets are
+// left out. Creases come by falling length. `co_visible[i][j]` says that some aspect shows both i
+// and j, `co_visible[i][i]` that some aspect shows i. An intersecting set also holds lines without
+// a common corner: their true end-point distance is in the vector, and delta_d (eq. 5) stays a
+// matter of matching. Members come by rising end-point distance, so corners come first.
 LineSets MakeLineSets(const Mesh& mesh, const std::vector<Crease>& creases,
                       const std::vector<std::vector<bool>>& co_visible, double parallel_angle_rad);
 

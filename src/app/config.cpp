@@ -1,0 +1,88 @@
+#include "app/config.h"
+
+#include "app/failure.h"
+#include "app/yaml_section.h"
+
+namespace wirepose::app {
+namespace {
+
+constexpr std::int64_t kMaxFrames = 1'000'000'000;
+constexpr std::size_t kMaxFrameId = 63;  // bound of std_msgs::Header's frame_id in dds_idl
+
+hal::ReplayConfig ReadReplay(YamlSection section) {
+  hal::ReplayConfig config;
+  std::int64_t scene = 0;
+  section.Read("data_set", config.root);
+  section.Read("split", config.split);
+  if (section.Read("scene", scene, 0, 999'999)) config.scene_id = static_cast<int>(scene);
+  section.Read("loop", config.loop);
+  section.Read("frame_rate_hz", config.frame_rate_hz, 0, 1000);
+  section.Finish();
+  return config;
+}
+
+hal::SimulatedConfig ReadSimulated(YamlSection section) {
+  hal::SimulatedConfig config;
+  std::int64_t seed = static_cast<std::int64_t>(config.seed);
+  std::int64_t frames = static_cast<std::int64_t>(config.frame_count);
+  std::int64_t samples = config.samples_per_pixel;
+  section.Read("meshes", config.mesh_dir);
+  section.Read("seed", seed, 0, std::numeric_limits<std::int64_t>::max());
+  section.Read("frames", frames, 0, kMaxFrames);
+  section.Read("frame_rate_hz", config.frame_rate_hz, 1, 1000);
+  section.Read("samples_per_pixel", samples, 4, 36);
+  section.Read("truth_file", config.truth_path);
+  section.Finish();
+  config.seed = static_cast<std::uint64_t>(seed);
+  config.frame_count = static_cast<std::uint64_t>(frames);
+  config.samples_per_pixel = static_cast<int>(samples);
+  return config;
+}
+
+CameraConfig ReadCamera(YamlSection section, const std::filesystem::path& file) {
+  CameraConfig config;
+  std::string backend;
+  std::int64_t timeout_ms = config.timeout.count();
+  if (section.Read("backend", backend)) {
+    config.backend = ParseCameraBackend(backend, file.string() + ": camera.backend");
+  }
+  section.Read("timeout_ms", timeout_ms, 10, 1000);
+  config.timeout = std::chrono::milliseconds(timeout_ms);
+  config.replay = ReadReplay(section.Section("replay"));
+  config.simulated = ReadSimulated(section.Section("simulated"));
+  section.Finish();
+  return config;
+}
+
+void ReadDds(YamlSection section, Config& config) {
+  std::int64_t domain = 0;
+  section.Read("domain", domain, 0, kMaxDomain);
+  section.Read("loopback", config.bus.loopback);
+  section.Read("frame_id", config.frame_id);
+  if (config.frame_id.size() > kMaxFrameId) section.Refuse("frame_id", "longer than 63 bytes");
+  section.Finish();
+  config.bus.domain = static_cast<std::uint32_t>(domain);
+}
+
+}  // namespace
+
+CameraBackend ParseCameraBackend(const std::string& name, const std::string& where) {
+  if (name == "libcamera") return CameraBackend::kLibcamera;
+  if (name == "replay") return CameraBackend::kReplay;
+  if (name == "simulated") return CameraBackend::kSimulated;
+  throw UsageError(where + ": no camera '" + name + "'; choose libcamera, replay or simulated");
+}
+
+Config LoadConfig(const std::filesystem::path& file) {
+  YamlSection section(file);
+  Config config;
+  config.file = file;
+  config.camera = ReadCamera(section.Section("camera"), file);
+  ReadDds(section.Section("dds"), config);
+  section.Read("models", config.models);
+  section.Read("search_for", config.search_for);
+  section.Finish();
+  return config;
+}
+
+}  // namespace wirepose::app

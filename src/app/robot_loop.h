@@ -1,0 +1,56 @@
+// The loop of the robot program: a frame from the camera, through the recognizer, to the publisher.
+#ifndef WIREPOSE_APP_ROBOT_LOOP_H_
+#define WIREPOSE_APP_ROBOT_LOOP_H_
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+
+#include "app/health_monitor.h"
+#include "app/service.h"
+#include "app/stage_timer.h"
+#include "hal/stereo_camera.h"
+#include "pipeline/recognizer.h"
+#include "publish/publisher.h"
+
+namespace wirepose::app {
+
+struct RobotLoopConfig {
+  std::chrono::nanoseconds frame_timeout;
+  std::uint64_t max_frames = 0;  // frames of any status; 0: no end
+};
+
+// Refers to its parts; they must outlive it. Run is called on one thread; allocates nothing while
+// frames are good.
+class RobotLoop {
+ public:
+  RobotLoop(hal::StereoCamera& camera, Recognizer& recognizer, Publisher& publisher,
+            Service& service, const RobotLoopConfig& config);
+
+  // Runs on a streaming camera until `stop` is set, the feed is over or max_frames have come. A bad
+  // frame, a time-out and a lost camera are reported on health, and the loop goes on. Throws
+  // WorkFailed when the camera reports an error that waiting cannot mend.
+  void Run(const std::atomic<bool>& stop);
+
+  [[nodiscard]] std::uint64_t frames() const { return frames_; }
+
+ private:
+  void HandleFrame(hal::FrameLease lease);
+  // False at the end of the feed.
+  bool HandleCameraError(hal::CameraError error);
+  void SendHealthIfDue();
+
+  hal::StereoCamera& camera_;
+  Recognizer& recognizer_;
+  Publisher& publisher_;
+  Service& service_;
+  const RobotLoopConfig config_;
+  HealthMonitor health_;
+  StageTimer timer_;
+  FrameReport report_;
+  std::uint64_t frames_ = 0;
+};
+
+}  // namespace wirepose::app
+
+#endif  // WIREPOSE_APP_ROBOT_LOOP_H_

@@ -1,0 +1,213 @@
+// What really goes over DDS: the bytes of the ROS 2 message, and each topic's way from the
+// publisher to a reader.
+#include <dds/ddsi/ddsi_serdata.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "cdr_reader.h"
+#include "publish/publisher.h"
+#include "reports_for_test.h"
+
+namespace wirepose {
+namespace {
+
+using test::CdrReader;
+
+// Publisher and reader in one process, on a domain of this process's own.
+class WireTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    config_.bus = {static_cast<std::uint32_t>(100 + getpid() % 60), true};
+    config_.frame_id = "left_optical";
+    config_.version = "9.8.7";
+    const auto opened = publisher_->Open(config_, models_);
+    ASSERT_TRUE(opened) << opened.error();
+    Result<Bus, std::string> bus = Bus::Open(config_.bus);
+    ASSERT_TRUE(bus) << bus.error();
+    bus_ = std::make_unique<Bus>(std::move(*bus));
+  }
+  void TearDown() override {
+    bus_.reset();  // before the publisher, which owns the domain
+    publisher_->Close();
+  }
+
+  dds_entity_t MatchedReader(const TopicSpec& topic) {
+    const Result<dds_entity_t, std::string> reader = bus_->CreateReader(topic);
+    if (!reader) throw std::runtime_error(reader.error());
+    WaitUntil([&] {
+      dds_subscription_matched_status_t status{};
+      dds_get_subscription_matched_status(*reader, &status);
+      return status.current_count > 0;
+    });
+    // The reader knows the writer; give the writer the same chance.
+    dds_sleepfor(DDS_MSECS(200));
+    return *reader;
+  }
+
+  static void WaitUntil(const std::function<bool()>& condition) {
+    for (int i = 0; i < 1000; ++i) {
+      if (condition()) return;
+      dds_sleepfor(DDS_MSECS(10));
+    }
+    throw std::runtime_error("nothing happened for 10 s");
+  }
+
+  static void Take(dds_entity_t reader, void* message) {
+    void* samples[] = {message};
+    dds_sample_info_t info{};
+    WaitUntil([&] { return dds_take(reader, samples, &info, 1, 1) == 1 && info.valid_data; });
+  }
+
+  static std::vector<unsigned char> TakeBytes(dds_entity_t reader) {
+    ddsi_serdata* data = nullptr;
+    dds_sample_info_t info{};
+    WaitUntil([&] { return dds_takecdr(reader, &data, 1, &info, DDS_ANY_STATE) == 1; });
+    const std::uint32_t size = ddsi_serdata_size(data);
+    ddsrt_iovec_t io{};
+    ddsi_serdata* const reference = ddsi_serdata_to_ser_ref(data, 0, size, &io);
+    const auto* const first = static_cast<const unsigned char*>(io.iov_base);
+    std::vector<unsigned char> bytes(first, first + io.iov_len);
+    ddsi_serdata_to_ser_unref(reference, &io);
+    ddsi_serdata_unref(data);
+    return bytes;
+  }
+
+  std::mt19937 random_{6};
+  ModelView models_[1] = {test::MakeModel(7, "juice_dispenser")};
+  PublisherConfig config_;
+  std::unique_ptr<Publisher> publisher_ = std::make_unique<Publisher>();
+  std::unique_ptr<Bus> bus_;
+};
+
+void ExpectHeader(CdrReader& cdr, CaptureTime time) {
+  const auto sec = cdr.Read<std::int32_t>();
+  const auto nanosec = cdr.Read<std::uint32_t>();
+  EXPECT_EQ(std::int64_t{sec} * 1'000'000'000 + nanosec, time.time_since_epoch().count());
+  EXPECT_EQ(cdr.ReadString(), "left_optical");
+}
+
+void ExpectPose(CdrReader& cdr, const Matrix3d& R, const Vector3d& t, double tolerance) {
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(cdr.Read<double>(), t(i), tolerance);
+  const double x = cdr.Read<double>();
+  const double y = cdr.Read<double>();
+  const double z = cdr.Read<double>();
+  const double w = cdr.Read<double>();
+  EXPECT_LT((Eigen::Quaterniond(w, x, y, z).toRotationMatrix() - R).norm(), 1e-12);
+}
+
+void ExpectResult(CdrReader& cdr, const Detection& in, const Pose& T, float weight) {
+  EXPECT_EQ(cdr.ReadString(), "juice_dispenser");
+  EXPECT_DOUBLE_EQ(cdr.Read<double>(), double{in.score} * double{weight});
+  ExpectPose(cdr, T.R, T.t, 0);
+  for (int r = 0; r < 6; ++r) {
+    for (int c = 0; c < 6; ++c) {
+      EXPECT_EQ(cdr.Read<double>(), in.covariance((r + 3) % 6, (c + 3) % 6));
+    }
+  }
+}
+
+void ExpectDetection(CdrReader& cdr, const FrameReport& report, const Detection& in) {
+  ExpectHeader(cdr, report.capture_time);
+  const auto results = cdr.Read<std::uint32_t>();
+  ASSERT_EQ(results, std::max<std::size_t>(1, in.modes.size()));
+  for (std::uint32_t r = 0; r < results; ++r) {
+    // Modes come with rising weight from RandomReport and go out with falling weight.
+    if (in.modes.empty()) {
+      ExpectResult(cdr, in, in.T_camera_model, 1);
+    } else {
+      const PoseMode& mode = in.modes[results - 1 - r];
+      ExpectResult(cdr, in, mode.T_camera_model, mode.weight);
+    }
+  }
+  ExpectPose(cdr, in.T_camera_model.R, in.T_camera_model * Vector3d(0.1, 0, 0.25), 1e-7);
+  EXPECT_NEAR(cdr.Read<double>(), 0.4, 1e-7);
+  EXPECT_NEAR(cdr.Read<double>(), 0.4, 1e-7);
+  EXPECT_NEAR(cdr.Read<double>(), 0.5, 1e-7);
+  EXPECT_EQ(cdr.ReadString(), in.track_id == 0 ? "" : std::to_string(in.track_id));
+}
+
+TEST_F(WireTest, RosMessageFieldByField) {
+  const dds_entity_t reader = MatchedReader(kDetectionsTopic);
+  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{2}, kMaxDetections}) {
+    const FrameReport report = test::RandomReport(random_, count);
+    ASSERT_TRUE(publisher_->Publish(report));
+    const std::vector<unsigned char> bytes = TakeBytes(reader);
+    CdrReader cdr(bytes);
+    ExpectHeader(cdr, report.capture_time);
+    ASSERT_EQ(cdr.Read<std::uint32_t>(), count);
+    for (const Detection& in : report.result.detections) ExpectDetection(cdr, report, in);
+    EXPECT_TRUE(cdr.AtEnd());
+  }
+}
+
+TEST_F(WireTest, TypeAndTopicAreThoseOfRos2) {
+  EXPECT_STREQ(kDetectionsTopic.name, "rt/wirepose/detections");
+  EXPECT_STREQ(kDetectionsTopic.type->m_typename, "vision_msgs::msg::dds_::Detection3DArray_");
+  EXPECT_EQ(kDetectionsTopic.type->m_nkeys, 0u);
+}
+
+TEST_F(WireTest, RecognitionArrivesWhole) {
+  const dds_entity_t reader = MatchedReader(kRecognitionTopic);
+  const FrameReport report = test::RandomReport(random_, kMaxDetections);
+  ASSERT_TRUE(publisher_->Publish(report));
+  const auto sent = std::make_unique<RecognitionMessage>();
+  FillMessage(report, models_, config_.frame_id, *sent);
+  const auto received = std::make_unique<RecognitionMessage>();
+  Take(reader, &received->value);
+  EXPECT_EQ(received->value.frame_sequence, report.sequence);
+  ASSERT_EQ(received->value.detections._length, kMaxDetections);
+  for (std::size_t i = 0; i < kMaxDetections; ++i) {
+    const wirepose_Detection& a = sent->value.detections._buffer[i];
+    const wirepose_Detection& b = received->value.detections._buffer[i];
+    EXPECT_EQ(std::memcmp(&a.pose, &b.pose, sizeof a.pose), 0);
+    EXPECT_EQ(std::memcmp(a.covariance, b.covariance, sizeof a.covariance), 0);
+    ASSERT_EQ(a.modes._length, b.modes._length);
+  }
+  EXPECT_EQ(received->value.lists._length, 7u);
+}
+
+TEST_F(WireTest, WhoComesLateGetsTheLastHealth) {
+  HealthReport report;
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    report.uptime_ns = i;
+    report.last_error = "frame 3: image damaged";
+    WaitUntil([&] { return publisher_->Publish(report); });
+  }
+  dds_sleepfor(DDS_MSECS(100));
+  const dds_entity_t reader = MatchedReader(kHealthTopic);
+  const auto received = std::make_unique<HealthMessage>();
+  Take(reader, &received->value);
+  EXPECT_EQ(received->value.uptime_ns, 3u);
+  EXPECT_STREQ(received->value.version, "9.8.7");
+  EXPECT_STREQ(received->value.last_error, "frame 3: image damaged");
+  ASSERT_EQ(received->value.models._length, 1u);
+  EXPECT_EQ(received->value.models._buffer[0].checksum, 0xC0FFEE07U);
+}
+
+TEST_F(WireTest, ReportsArriveInOrder) {
+  const dds_entity_t reader = MatchedReader(kRecognitionTopic);
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    FrameReport report;
+    report.sequence = i;
+    ASSERT_TRUE(publisher_->Publish(report));
+  }
+  const auto received = std::make_unique<RecognitionMessage>();
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    Take(reader, &received->value);
+    EXPECT_EQ(received->value.frame_sequence, i);
+  }
+  EXPECT_EQ(publisher_->write_errors(), 0u);
+}
+
+TEST(Bus, DomainOutOfRangeIsRefusedWithAReason) {
+  const Result<Bus, std::string> bus = Bus::Open({5000, true});
+  ASSERT_FALSE(bus);
+  EXPECT_NE(bus.error().find("5000"), std::string::npos) << bus.error();
+}
+
+}  // namespace
+}  // namespace wirepose
