@@ -14,6 +14,24 @@ inline constexpr int kMaxImageWidth = 640;
 inline constexpr int kMaxImageHeight = 480;
 inline constexpr std::size_t kMaxPixels = std::size_t{kMaxImageWidth} * kMaxImageHeight;
 
+// --- Features ------------------------------------------------------------------------------------------------------
+// Real kitchens show 150-300 segments of 12 px and more; the longest are kept.
+inline constexpr std::size_t kMaxSegments = 512;
+// Pixels on edge ridges: a sixth of a 640x480 image; photographs of clutter have 15,000 to 30,000.
+inline constexpr std::size_t kMaxRidgePixels = 51200;
+// One connected edge; longer than any straight line in the image.
+inline constexpr std::size_t kMaxChain = 2048;
+
+// Related pairs of image lines. 100 lines with depth have some 4 neighbours at junctions and 15 others within reach.
+inline constexpr std::size_t kMaxImageLinePairs = 6144;
+// Corresponding line sets kept per model, by rank: the paper's "small number".
+inline constexpr std::size_t kMaxCorrespondences = 4096;
+inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose
+// Pose hypotheses kept per model after the coarse score, and after removal of near duplicates.
+inline constexpr std::size_t kMaxHypotheses = 256;
+inline constexpr std::size_t kMaxCandidates = 24;
+inline constexpr std::size_t kMaxEdgeSamples = 512;  // points on visible edges of one pose; the step widens to fit
+
 // --- Models --------------------------------------------------------------------------------------------------------
 inline constexpr std::size_t kMaxModels = 16;          // objects searched for at once (memory budget is stated for 16)
 inline constexpr std::size_t kMaxModelVertices = 512;  // a refrigerator with two doors and handles has 118

@@ -20,6 +20,9 @@ struct SimulatedConfig {
   std::filesystem::path mesh_dir;  // the objects: sim/target_mesh.h says what is read
   double frame_rate_hz = 30;       // of the capture stamps and of the camera's motion, 1..1000
   int samples_per_pixel = 16;      // 4, 9, 16, 25 or 36
+  // calib.yaml of the rig to simulate, see hal/dataset/calibration_file.h; empty: sim's own rig,
+  // 640x480.
+  std::filesystem::path calibration_path;
   // When set, one JSON object a line for every frame, written before the frame is given out:
   // {"sequence":0,"capture_time_ns":0,"objects":[{"obj_id":1,"name":"parcel_box","R":[9],"t":[3],"visib_fract":0.9}]}
   // R (row-major) and t [m] map the model to the raw left camera.
@@ -44,9 +47,10 @@ struct SimulatedTruth {
 // times are sequence / frame_rate_hz. The same configuration gives the same frames, stamps and
 // bytes each time; Start begins at the first frame.
 //
-// Open: kNotFound (no mesh folder), kBadData (no usable mesh; truth file not writable),
-// kUnsupported (configuration). AcquireFrame: kTimeout (still rendering), kNoBuffer, kEndOfStream,
-// kBadData (the truth file could not be written).
+// Open: kNotFound (no mesh folder), kBadData (no usable mesh, malformed calibration), kUnsupported
+// (configuration, or no mesh is small enough). Start: kBadData (truth file not writable).
+// AcquireFrame: kTimeout (still rendering), kNoBuffer, kEndOfStream, kBadData (the truth file
+// refused a line). Stop waits for the frame in the making, about a second.
 class SimulatedCamera final : public StereoCamera {
  public:
   static constexpr std::uint32_t kBuffers = 4;

@@ -2,6 +2,7 @@
 #ifndef WIREPOSE_GEOMETRY_SE3_H_
 #define WIREPOSE_GEOMETRY_SE3_H_
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cmath>

@@ -1,0 +1,48 @@
+// The stereo camera: both eyes and the truth of one moment.
+#ifndef WIREPOSE_SIM_STEREO_SHOT_H_
+#define WIREPOSE_SIM_STEREO_SHOT_H_
+
+#include "geometry/camera.h"
+#include "hal/dataset/dataset_writer.h"
+#include "hal/dataset/png_image.h"
+#include "sim/renderer.h"
+#include "sim/sensor.h"
+#include "sim/truth.h"
+
+namespace wirepose::sim {
+
+struct StereoRig {
+  StereoCalibration calibration;
+  Pose T_world_left;          // raw left camera in the world
+  double psf_sigma_px = 0.5;  // blur of both lenses
+  Sensor left_sensor;
+  Sensor right_sensor{.gain = 0.9F};  // the eyes of real rigs differ
+  float exposure_target = 0.8F;  // both eyes are exposed as the left one asks, see AutoExposure
+};
+
+struct StereoShot {
+  dataset::GrayImage left, right;  // raw, distorted
+  Truth truth;                     // of the left camera
+};
+
+// A rig with everything a real one has: 640x480, f 525 px, 0.12 m baseline, barrel distortion, eyes
+// not quite alike and not quite parallel.
+[[nodiscard]] StereoCalibration DefaultCalibration();
+
+// Renders both eyes. Deterministic: the same arguments give the same bytes, whatever
+// `options.threads` is.
+[[nodiscard]] StereoShot ShootStereo(const Renderer& renderer, const StereoRig& rig,
+                                     const RenderOptions& options);
+
+// One eye of the rig as a camera.
+[[nodiscard]] Camera LeftCamera(const StereoRig& rig);
+[[nodiscard]] Camera RightCamera(const StereoRig& rig);
+
+// What a data set keeps of a shot.
+[[nodiscard]] dataset::FrameRecord ToRecord(int im_id, const StereoRig& rig, const Truth& truth);
+// Depth in units of dataset::kDepthScale, rounded; 0 where there is none or it is too far.
+[[nodiscard]] dataset::DepthImage ToDepthImage(const Truth& truth);
+
+}  // namespace wirepose::sim
+
+#endif  // WIREPOSE_SIM_STEREO_SHOT_H_

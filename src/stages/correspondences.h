@@ -1,0 +1,51 @@
+// Stage 4: corresponding line sets (paper section 3.2, steps 1-4).
+#ifndef WIREPOSE_STAGES_CORRESPONDENCES_H_
+#define WIREPOSE_STAGES_CORRESPONDENCES_H_
+
+#include <cstdint>
+
+#include "base/keep_best.h"
+#include "model/prepared_model.h"
+#include "stages/line_sets.h"
+
+namespace wirepose {
+
+struct CorrespondenceParams {
+  float sigmas = 2.5F;           // how many of its own standard deviations an image value may be off
+  float length_tolerance = 0.06F;  // stereo and model scale may disagree by this share
+  float end_tolerance_m = 0.006F;
+  float angle_tolerance_rad = 0.06F;
+  float min_cover = 0.3F;        // share of the base edge that its image line must cover
+  float min_other_cover = 0.2F;  // the same of the other edge
+};
+
+// The smallest corresponding line set: an image pair and the model pair that shares its parameter vector.
+struct CorrespondingPair {
+  std::uint16_t image_pair = 0;  // index into ImageLineSets::pairs
+  std::uint16_t base_edge = 0;   // model edges
+  std::uint16_t other_edge = 0;
+  std::uint8_t base_flipped = 0;  // 1: the edge runs against its image line
+  std::uint8_t junction = 0;      // 1: the image junction is the model corner that both edges share
+  float rank = 0;  // more is better: how much of both edges is covered, lines with depth and junctions count more
+};
+
+struct BetterPair {
+  bool operator()(const CorrespondingPair& p, const CorrespondingPair& q) const {
+    if (p.rank != q.rank) return p.rank > q.rank;
+    if (p.image_pair != q.image_pair) return p.image_pair < q.image_pair;
+    if (p.base_edge != q.base_edge) return p.base_edge < q.base_edge;
+    if (p.other_edge != q.other_edge) return p.other_edge < q.other_edge;
+    return p.base_flipped < q.base_flipped;
+  }
+};
+using CorrespondingPairs = KeepBest<CorrespondingPair, kMaxCorrespondences, BetterPair>;
+
+// Every image pair whose parameter vector agrees with that of a model pair. Lengths are unreliable: a segment may be
+// any part of its edge that is not too short, but it cannot be longer. Symmetric models are searched from one edge of
+// each symmetry orbit. O(pairs * representative base edges * members).
+void FindCorrespondences(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
+                         const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out);
+
+}  // namespace wirepose
+
+#endif  // WIREPOSE_STAGES_CORRESPONDENCES_H_

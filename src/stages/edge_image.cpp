@@ -1,0 +1,148 @@
+#include "stages/edge_image.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wirepose {
+namespace {
+
+constexpr int kStride = kMaxImageWidth;
+constexpr int kBorder = 3;
+constexpr std::size_t kLastBucket = 16384 / 16;  // sqrt(2) * 255 * 32 fits below
+
+// Horizontal pass of one row: times 16, borders repeated.
+void FilterRow(const std::uint8_t* in, int width, std::int16_t* out) {
+  const auto at = [&](int x) { return static_cast<int>(in[std::clamp(x, 0, width - 1)]); };
+  const auto tap = [](int a, int b, int c, int d, int e) {
+    return static_cast<std::int16_t>(a + 4 * b + 6 * c + 4 * d + e);
+  };
+  for (int x : {0, 1, width - 2, width - 1}) out[x] = tap(at(x - 2), at(x - 1), at(x), at(x + 1), at(x + 2));
+  for (int x = 2; x < width - 2; ++x) out[x] = tap(in[x - 2], in[x - 1], in[x], in[x + 1], in[x + 2]);
+}
+
+// Magnitude below which half of the pixels lie. For pure noise the magnitude is Rayleigh distributed and its median is
+// 1.18 sigma; in a real image flat areas dominate, so the value is an upper bound close to it.
+int MedianMagnitude(const EdgeImage& image) {
+  std::array<std::uint32_t, 512> histogram{};
+  std::uint32_t count = 0;
+  for (int y = kBorder; y < image.height - kBorder; y += 4) {
+    for (int x = kBorder; x < image.width - kBorder; ++x) {
+      ++histogram[std::min<std::size_t>(image.magnitude[EdgeImage::Index(x, y)], histogram.size() - 1)];
+      ++count;
+    }
+  }
+  std::uint32_t below = 0;
+  for (std::size_t m = 0; m < histogram.size(); ++m) {
+    below += histogram[m];
+    if (2 * below >= count) return static_cast<int>(m);
+  }
+  return static_cast<int>(histogram.size());
+}
+
+void ComputeGradient(const SmoothPlane& smooth, EdgeImage& out) {
+  for (int y = 0; y < out.height; ++y) {
+    const std::int16_t* row = smooth.data() + y * kStride;
+    const std::int16_t* above = y > 0 ? row - kStride : row;
+    const std::int16_t* below = y + 1 < out.height ? row + kStride : row;
+    std::int16_t* gx = out.gx.data() + y * kStride;
+    std::int16_t* gy = out.gy.data() + y * kStride;
+    std::uint16_t* magnitude = out.magnitude.data() + y * kStride;
+    gx[0] = gx[out.width - 1] = 0;
+    for (int x = 1; x < out.width - 1; ++x) gx[x] = static_cast<std::int16_t>(row[x + 1] - row[x - 1]);
+    for (int x = 0; x < out.width; ++x) gy[x] = static_cast<std::int16_t>(below[x] - above[x]);
+    for (int x = 0; x < out.width; ++x) {
+      const auto square = static_cast<float>(gx[x] * gx[x] + gy[x] * gy[x]);
+      magnitude[x] = static_cast<std::uint16_t>(std::sqrt(square));
+    }
+  }
+}
+
+// The larger gradient component tells the direction in which neighbours are compared. One side compares with >=, so
+// that a plateau of two equal pixels yields one ridge pixel.
+Ridge ClassifyPixel(const EdgeImage& image, std::size_t i) {
+  const int m = image.magnitude[i];
+  const bool across_x = std::abs(int{image.gx[i]}) >= std::abs(int{image.gy[i]});
+  const std::size_t step = across_x ? 1 : kStride;
+  if (m <= image.magnitude[i - step] || m < image.magnitude[i + step]) return Ridge::kNone;
+  return across_x ? Ridge::kAcrossX : Ridge::kAcrossY;
+}
+
+// Counting sort of all ridge pixels by falling magnitude; the weakest are dropped when there are too many.
+void SortRidges(EdgeImage& image) {
+  std::array<std::uint32_t, kLastBucket + 1> start{};
+  const auto bucket = [](std::uint16_t m) { return kLastBucket - std::min<std::size_t>(m / 16, kLastBucket); };
+  const auto for_each = [&](const auto& use) {
+    for (int y = 0; y < image.height; ++y) {
+      const std::size_t row = EdgeImage::Index(0, y);
+      for (std::size_t i = row; i < row + static_cast<std::size_t>(image.width); ++i) {
+        if (image.ridge[i] != 0) use(i);
+      }
+    }
+  };
+  for_each([&](std::size_t i) { ++start[bucket(image.magnitude[i])]; });
+  std::uint32_t sum = 0;
+  for (std::uint32_t& s : start) {
+    const std::uint32_t count = s;
+    s = sum;
+    sum += count;
+  }
+  for_each([&](std::size_t i) {
+    const std::uint32_t place = start[bucket(image.magnitude[i])]++;
+    if (place < kMaxRidgePixels) {
+      image.ridge_pixels[place] = static_cast<std::uint32_t>(i);
+    } else {
+      image.ridge[i] = 0;
+    }
+  });
+  image.ridge_count = std::min<std::uint32_t>(sum, kMaxRidgePixels);
+  image.ridge_dropped = sum - image.ridge_count;
+}
+
+}  // namespace
+
+void SmoothImage(ImageView image, SmoothPlane& smooth) {
+  // A ring of five filtered rows: each output row needs two above and two below, borders repeated.
+  std::array<std::array<std::int16_t, kMaxImageWidth>, 5> ring;
+  const auto filtered = [&](int y) -> const std::int16_t* {
+    return ring[static_cast<std::size_t>(std::clamp(y, 0, image.height - 1) % 5)].data();
+  };
+  for (int y = 0; y < 2; ++y) FilterRow(image.row(y), image.width, ring[static_cast<std::size_t>(y)].data());
+  for (int y = 0; y < image.height; ++y) {
+    if (y + 2 < image.height) {
+      FilterRow(image.row(y + 2), image.width, ring[static_cast<std::size_t>((y + 2) % 5)].data());
+    }
+    const std::int16_t* a = filtered(y - 2);
+    const std::int16_t* b = filtered(y - 1);
+    const std::int16_t* c = filtered(y);
+    const std::int16_t* d = filtered(y + 1);
+    const std::int16_t* e = filtered(y + 2);
+    std::int16_t* out = smooth.data() + y * kStride;
+    for (int x = 0; x < image.width; ++x) {
+      out[x] = static_cast<std::int16_t>((a[x] + 4 * b[x] + 6 * c[x] + 4 * d[x] + e[x] + 8) / kSmoothOne);
+    }
+  }
+}
+
+void FindRidges(const SmoothPlane& smooth, int width, int height, const RectificationMap& map,
+                const EdgeImageParams& params, EdgeImage& out) {
+  out.width = width;
+  out.height = height;
+  ComputeGradient(smooth, out);
+  const float noise = static_cast<float>(MedianMagnitude(out)) / 1.18F;
+  const float threshold = std::max(params.noise_factor * noise, params.min_gradient * kGradientOne);
+  // Texture everywhere must not silence the edges: the noise estimate is trusted up to 4 grey levels per pixel.
+  out.threshold = static_cast<std::uint16_t>(std::min(threshold, 4.0F * kGradientOne));
+  for (int y = 0; y < height; ++y) {
+    std::uint8_t* ridge = out.ridge.data() + EdgeImage::Index(0, y);
+    std::fill(ridge, ridge + width, std::uint8_t{0});
+    if (y < kBorder || y >= height - kBorder) continue;
+    const auto [begin, end] = map.valid[static_cast<std::size_t>(y)];
+    for (int x = begin + kBorder; x < end - kBorder; ++x) {
+      const std::size_t i = EdgeImage::Index(x, y);
+      if (out.magnitude[i] >= out.threshold) ridge[x] = static_cast<std::uint8_t>(ClassifyPixel(out, i));
+    }
+  }
+  SortRidges(out);
+}
+
+}  // namespace wirepose

@@ -1,0 +1,58 @@
+#include "stages/edge_map.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace wirepose {
+namespace {
+
+// Tangents of 11.25, 22.5 and 33.75 degrees: sector borders within 45 degrees.
+constexpr float kTan[3] = {0.19891237F, 0.41421356F, 0.66817864F};
+
+std::uint16_t DirectionAndNeighbours(int direction) {
+  const auto rotate = [](int d) { return static_cast<std::uint16_t>(1U << ((d + EdgeMap::kDirections) % EdgeMap::kDirections)); };
+  return static_cast<std::uint16_t>(rotate(direction - 1) | rotate(direction) | rotate(direction + 1));
+}
+
+}  // namespace
+
+int EdgeMap::Direction(float dx, float dy) {
+  const float ax = std::abs(dx), ay = std::abs(dy);
+  const bool steep = ay > ax;
+  const float low = steep ? ax : ay;
+  const float high = steep ? ay : ax;
+  int sector = 0;  // 0..3 within 45 degrees of the nearer axis
+  while (sector < 3 && low > kTan[sector] * high) ++sector;
+  const int first_quadrant = steep ? 7 - sector : sector;  // 0..7 counts 11.25 degrees from the x axis
+  return (dx >= 0) == (dy >= 0) ? first_quadrant : kDirections - 1 - first_quadrant;
+}
+
+void BuildEdgeMap(const EdgeImage& edges, EdgeMap& out) {
+  out.width = edges.width;
+  out.height = edges.height;
+  std::fill(out.directions.begin(), out.directions.begin() + static_cast<std::ptrdiff_t>(EdgeImage::Index(0, edges.height)),
+            std::uint16_t{0});
+  // Half widths of a disc of radius 2, row by row. Ridges keep 3 pixels from the border.
+  constexpr int kHalfWidth[5] = {1, 2, 2, 2, 1};
+  for (std::uint32_t k = 0; k < edges.ridge_count; ++k) {
+    const std::uint32_t i = edges.ridge_pixels[k];
+    // The edge runs across its gradient.
+    const std::uint16_t bits = DirectionAndNeighbours(
+        EdgeMap::Direction(static_cast<float>(-edges.gy[i]), static_cast<float>(edges.gx[i])));
+    for (int dy = -EdgeMap::kRadius; dy <= EdgeMap::kRadius; ++dy) {
+      std::uint16_t* row = out.directions.data() + i + dy * kMaxImageWidth;
+      const int half = kHalfWidth[dy + EdgeMap::kRadius];
+      for (int dx = -half; dx <= half; ++dx) row[dx] = static_cast<std::uint16_t>(row[dx] | bits);
+    }
+  }
+  std::uint32_t set = 0, count = 0;
+  for (int y = 4; y < edges.height - 4; y += 3) {
+    for (int x = 4; x < edges.width - 4; x += 3) {
+      set += static_cast<std::uint32_t>(std::popcount(out.directions[EdgeImage::Index(x, y)]));
+      count += EdgeMap::kDirections;
+    }
+  }
+  out.background = count > 0 ? static_cast<float>(set) / static_cast<float>(count) : 0.0F;
+}
+
+}  // namespace wirepose

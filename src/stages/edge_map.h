@@ -1,0 +1,41 @@
+// Where edges of which orientation are: one look-up answers "is there an edge along this direction, within 2 px?"
+#ifndef WIREPOSE_STAGES_EDGE_MAP_H_
+#define WIREPOSE_STAGES_EDGE_MAP_H_
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "stages/edge_image.h"
+
+namespace wirepose {
+
+// Bit k of a pixel is set when a ridge pixel within kRadius runs in direction k (modulo half a turn) or next to it.
+struct EdgeMap {
+  static constexpr int kDirections = 16;
+  static constexpr int kRadius = 2;
+
+  int width = 0, height = 0;
+  std::array<std::uint16_t, kMaxPixels> directions;
+  float background = 0;  // share of (pixel, direction) pairs that are set: the rate at which a random edge is supported
+
+  // Direction index 0..15 of an edge along (dx, dy), without trigonometry: the half turn is cut into eight sectors of
+  // equal tangent differences, close enough to equal angles for a tolerance of one and a half sectors.
+  static int Direction(float dx, float dy);
+
+  [[nodiscard]] bool Contains(float x, float y) const {
+    return x >= 4 && y >= 4 && x < static_cast<float>(width - 4) && y < static_cast<float>(height - 4);
+  }
+  // Requires Contains(x, y).
+  [[nodiscard]] bool HasEdge(float x, float y, int direction) const {
+    const auto i = EdgeImage::Index(static_cast<int>(x + 0.5F), static_cast<int>(y + 0.5F));
+    return ((directions[i] >> direction) & 1U) != 0;
+  }
+};
+
+// O(pixels + ridge pixels * 21).
+void BuildEdgeMap(const EdgeImage& edges, EdgeMap& out);
+
+}  // namespace wirepose
+
+#endif  // WIREPOSE_STAGES_EDGE_MAP_H_

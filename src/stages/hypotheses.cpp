@@ -1,0 +1,239 @@
+#include "stages/hypotheses.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wirepose {
+namespace {
+
+// Unit normal of the plane through the camera centre and an image segment.
+Vector3 PlaneNormal(const RectifiedCamera& camera, const Segment2& s) {
+  const auto ray = [&](const Vector2& p) {
+    return Vector3((p.x() - static_cast<float>(camera.cx)) / static_cast<float>(camera.f),
+                   (p.y() - static_cast<float>(camera.cy)) / static_cast<float>(camera.f), 1);
+  };
+  return ray(s.a).cross(ray(s.b)).normalized();
+}
+
+// The rotation that carries the orthonormal frame of (m1, m2) into that of (d1, d2); both pairs at the same angle.
+Matrix3 RotationOf(const Vector3& m1, const Vector3& m2, const Vector3& d1, const Vector3& d2) {
+  Matrix3 M, D;
+  M.col(0) = m1;
+  M.col(1) = (m2 - m1.dot(m2) * m1).normalized();
+  M.col(2) = M.col(0).cross(M.col(1));
+  D.col(0) = d1;
+  D.col(1) = (d2 - d1.dot(d2) * d1).normalized();
+  D.col(2) = D.col(0).cross(D.col(1));
+  return D * M.transpose();
+}
+
+class HypothesisMaker {
+ public:
+  HypothesisMaker(const HypothesisParams& params, const SceneEdges& scene, const PreparedModel& model,
+                  const Lines3& lines, Hypotheses& out)
+      : params_(params), scene_(scene), model_(model), lines_(lines), out_(out),
+        f_(static_cast<float>(scene.camera.f)), cx_(static_cast<float>(scene.camera.cx)),
+        cy_(static_cast<float>(scene.camera.cy)), fb_(f_ * static_cast<float>(scene.camera.baseline)) {
+    left_gain_ = Gain(scene.left);
+    right_gain_ = Gain(scene.right);
+  }
+
+  void Make(const CorrespondingPair& match, const ImageLinePair& pair) {
+    base_ = &lines_[pair.base];
+    other_ = &lines_[pair.other];
+    base_edge_ = &model_.edges[match.base_edge];
+    other_edge_ = &model_.edges[match.other_edge];
+    hypothesis_.base_line = pair.base;
+    hypothesis_.other_line = pair.other;
+    hypothesis_.base_edge = match.base_edge;
+    hypothesis_.other_edge = match.other_edge;
+    d1_ = base_->Direction();
+    m1_ = match.base_flipped != 0 ? Vector3(-base_edge_->direction) : base_edge_->direction;
+    const float c = m1_.dot(other_edge_->direction);
+    if (std::abs(c) < 0.97F) {
+      MakeFromAngle(c, pair, match);
+    } else if (pair.metric) {
+      MakeFromParallels();
+    }
+  }
+
+ private:
+  struct LogGain {
+    float hit, miss;
+  };
+
+  [[nodiscard]] LogGain Gain(const EdgeMap& map) const {
+    const float background = std::clamp(map.background, 0.03F, 0.5F);
+    return {params_.sample_weight * std::log(params_.support_rate / background),
+            params_.sample_weight * std::log((1 - params_.support_rate) / (1 - background))};
+  }
+
+  void MakeFromAngle(float c, const ImageLinePair& pair, const CorrespondingPair& match) {
+    const Vector3 n = PlaneNormal(scene_.camera, other_->segment);
+    const float nd = n.dot(d1_);
+    const float k = std::sqrt(std::max(0.0F, 1 - nd * nd));
+    const float s = std::sqrt(1 - c * c);
+    if (k < 0.05F) return;
+    const float cosine = -c * nd / (s * k);
+    if (std::abs(cosine) > 1.03F) return;
+    const float clamped = std::clamp(cosine, -1.0F, 1.0F);
+    const float sine = std::sqrt(1 - clamped * clamped);
+    const Vector3 u = (n - nd * d1_) / k;
+    const Vector3 v = d1_.cross(u);
+    for (float sign : {1.0F, -1.0F}) {
+      const Vector3 d2 = c * d1_ + s * (clamped * u + sign * sine * v);
+      if (pair.metric && std::abs(d2.dot(other_->Direction())) < MinCosine(pair)) continue;
+      hypothesis_.R = RotationOf(m1_, other_edge_->direction, d1_, d2);
+      const Vector3 t0 = 0.5F * (base_->a + base_->b) - hypothesis_.R * (0.5F * (base_edge_->a + base_edge_->b));
+      if (std::abs(nd) > 0.1F) {
+        const float along = -n.dot(hypothesis_.R * other_edge_->a + t0) / nd;
+        hypothesis_.t = t0 + along * d1_;
+        Score();
+      } else if (match.junction != 0) {
+        AlignEnd(t0, pair.base_end, match.base_flipped != 0);
+      }
+    }
+  }
+
+  // Puts the model corner at the base line's end `end`.
+  void AlignEnd(const Vector3& t0, LineEnd end, bool flipped) {
+    const Vector3 image = end == LineEnd::kA ? base_->a : base_->b;
+    const bool model_a = (end == LineEnd::kA) != flipped;
+    const Vector3 corner = hypothesis_.R * (model_a ? base_edge_->a : base_edge_->b) + t0;
+    hypothesis_.t = t0 + (image - corner).dot(d1_) * d1_;
+    Score();
+  }
+
+  [[nodiscard]] float MinCosine(const ImageLinePair& pair) const {
+    const float limit = std::min(1.2F, params_.direction_tolerance_rad + 2.5F * pair.angle_sigma_rad);
+    return 1 - 0.5F * limit * limit;  // cosine of the limit, to second order
+  }
+
+  void MakeFromParallels() {
+    const Vector3 base_middle = 0.5F * (base_->a + base_->b);
+    const Vector3 other_middle = 0.5F * (other_->a + other_->b);
+    const Vector3 model_base = 0.5F * (base_edge_->a + base_edge_->b);
+    const Vector3 model_other = 0.5F * (other_edge_->a + other_edge_->b);
+    const Vector3 model_across = Across(model_other - model_base, m1_);
+    const Vector3 image_across = Across(other_middle - base_middle, d1_);
+    if (model_across.norm() < 1e-3F || image_across.norm() < 1e-3F) return;
+    hypothesis_.R = RotationOf(m1_, model_across, d1_, image_across);
+    // Across the lines: the middle between both. Along them: each pair of end points in turn.
+    const Vector3 offset = 0.5F * (base_middle + other_middle) - hypothesis_.R * (0.5F * (model_base + model_other));
+    const Vector3 t0 = offset - offset.dot(d1_) * d1_;
+    AlignEnds(t0, *base_, *base_edge_);
+    AlignEnds(t0, *other_, *other_edge_);
+  }
+
+  static Vector3 Across(const Vector3& v, const Vector3& axis) { return v - v.dot(axis) * axis; }
+
+  void AlignEnds(const Vector3& t0, const Line3& line, const PreparedEdge& edge) {
+    const float i0 = std::min(line.a.dot(d1_), line.b.dot(d1_));
+    const float i1 = std::max(line.a.dot(d1_), line.b.dot(d1_));
+    const float ea = (hypothesis_.R * edge.a).dot(d1_);
+    const float eb = (hypothesis_.R * edge.b).dot(d1_);
+    for (const float along : {i0 - std::min(ea, eb), i1 - std::max(ea, eb)}) {
+      hypothesis_.t = t0 + along * d1_;
+      Score();
+    }
+  }
+
+  struct Projected {
+    Vector2 a, b;
+    float da, db;  // disparities
+  };
+
+  // False when the edge comes too near to the camera plane.
+  [[nodiscard]] bool Project(const PreparedEdge& edge, Projected& out) const {
+    const Vector3 a = hypothesis_.R * edge.a + hypothesis_.t;
+    const Vector3 b = hypothesis_.R * edge.b + hypothesis_.t;
+    if (a.z() < 0.05F || b.z() < 0.05F) return false;
+    out.a = {f_ * a.x() / a.z() + cx_, f_ * a.y() / a.z() + cy_};
+    out.b = {f_ * b.x() / b.z() + cx_, f_ * b.y() / b.z() + cy_};
+    out.da = fb_ / a.z();
+    out.db = fb_ / b.z();
+    return true;
+  }
+
+  // The segment lies on the projected edge and within its ends.
+  [[nodiscard]] bool Covers(const PreparedEdge& edge, const Segment2& segment) const {
+    Projected p;
+    if (!Project(edge, p)) return false;
+    const float length = (p.b - p.a).norm();
+    if (length < 3) return false;
+    const Vector2 d = (p.b - p.a) / length;
+    const float slack = params_.end_tolerance_px + params_.end_tolerance_share * length;
+    for (const Vector2& q : {segment.a, segment.b}) {
+      const float along = (q - p.a).dot(d);
+      const float across = std::abs((q - p.a).x() * d.y() - (q - p.a).y() * d.x());
+      if (along < -slack || along > length + slack || across > params_.end_tolerance_px) return false;
+    }
+    return true;
+  }
+
+  void Score() {
+    const Vector3 centre = hypothesis_.R * model_.centre + hypothesis_.t;
+    if (centre.z() < params_.min_depth_m) return;
+    if (!Covers(*base_edge_, base_->segment) || !Covers(*other_edge_, other_->segment)) return;
+    const EdgeBits visible = model_.VisibleEdges(-(hypothesis_.R.transpose() * hypothesis_.t));
+    if (!HasEdge(visible, hypothesis_.base_edge) || !HasEdge(visible, hypothesis_.other_edge)) return;
+    float left = 0, right = 0;
+    int inside = 0, total = 0;
+    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
+      Projected p;
+      if (!HasEdge(visible, e) || !Project(model_.edges[e], p)) continue;
+      const int n = std::clamp(static_cast<int>((p.b - p.a).norm() / params_.sample_step_px), 1, 16);
+      total += n;
+      inside += AddSupport(scene_.left, left_gain_, p.a, p.b, n, left);
+      const Vector2 ra(p.a.x() - p.da, p.a.y()), rb(p.b.x() - p.db, p.b.y());
+      AddSupport(scene_.right, right_gain_, ra, rb, n, right);
+    }
+    if (static_cast<float>(inside) < params_.min_inside * static_cast<float>(total)) return;
+    hypothesis_.score = left + right;
+    out_.Push(hypothesis_);
+  }
+
+  // Samples one projected edge; returns how many samples lie in the image.
+  static int AddSupport(const EdgeMap& map, const LogGain& gain, const Vector2& a, const Vector2& b, int n, float& sum) {
+    const Vector2 d = b - a;
+    const int direction = EdgeMap::Direction(d.x(), d.y());
+    const float step = 1 / static_cast<float>(n);
+    int inside = 0;
+    for (int k = 0; k < n; ++k) {
+      const float s = (static_cast<float>(k) + 0.5F) * step;
+      const float x = a.x() + s * d.x();
+      const float y = a.y() + s * d.y();
+      if (!map.Contains(x, y)) continue;
+      ++inside;
+      sum += map.HasEdge(x, y, direction) ? gain.hit : gain.miss;
+    }
+    return inside;
+  }
+
+  const HypothesisParams& params_;
+  const SceneEdges& scene_;
+  const PreparedModel& model_;
+  const Lines3& lines_;
+  Hypotheses& out_;
+  float f_, cx_, cy_, fb_;
+  LogGain left_gain_{}, right_gain_{};
+  // Of the pair at hand.
+  const Line3* base_ = nullptr;
+  const Line3* other_ = nullptr;
+  const PreparedEdge* base_edge_ = nullptr;
+  const PreparedEdge* other_edge_ = nullptr;
+  Vector3 d1_, m1_;
+  Hypothesis hypothesis_;
+};
+
+}  // namespace
+
+void MakeHypotheses(const HypothesisParams& params, const SceneEdges& scene, const PreparedModel& model,
+                    const Lines3& lines, const ImageLineSets& sets, std::span<const CorrespondingPair> pairs,
+                    Hypotheses& out) {
+  out.clear();
+  HypothesisMaker maker(params, scene, model, lines, out);
+  for (const CorrespondingPair& match : pairs) maker.Make(match, sets.pairs[match.image_pair]);
+}
+
+}  // namespace wirepose

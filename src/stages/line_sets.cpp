@@ -1,0 +1,136 @@
+#include "stages/line_sets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wirepose {
+namespace {
+
+float DistanceOfLines(const Line3& p, const Line3& q, float sine) {
+  const Vector3 between = 0.5F * (q.a + q.b) - 0.5F * (p.a + p.b);
+  const Vector3 u = p.Direction();
+  if (sine < 0.2F) return (between - between.dot(u) * u).norm();  // nearly parallel: distance of q's middle from p
+  const Vector3 n = u.cross(q.Direction());
+  return std::abs(between.dot(n)) / n.norm();
+}
+
+float FarthestEnds(const Line3& p, const Line3& q) {
+  const float squared = std::max({(p.a - q.a).squaredNorm(), (p.a - q.b).squaredNorm(), (p.b - q.a).squaredNorm(),
+                                  (p.b - q.b).squaredNorm()});
+  return std::sqrt(squared);
+}
+
+// The nearest pair of end points in the image, and how far apart they are.
+float NearestEnds(const Segment2& p, const Segment2& q, LineEnd& p_end, LineEnd& q_end) {
+  const Vector2 pe[2] = {p.a, p.b};
+  const Vector2 qe[2] = {q.a, q.b};
+  float nearest = 1e9F;
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      const float d = (pe[i] - qe[j]).squaredNorm();
+      if (d >= nearest) continue;
+      nearest = d;
+      p_end = static_cast<LineEnd>(i);
+      q_end = static_cast<LineEnd>(j);
+    }
+  }
+  return std::sqrt(nearest);
+}
+
+// Sine of the angle between two segments in the image.
+float ImageSine(const Segment2& p, const Segment2& q) {
+  const Vector2 u = p.Direction(), v = q.Direction();
+  return std::abs(u.x() * v.y() - u.y() * v.x());
+}
+
+class PairMaker {
+ public:
+  PairMaker(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines)
+      : params_(params), lines_(lines) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (!lines[i].has_depth) continue;
+      direction_sigma_[i] = DirectionSigma(camera, lines[i]);
+      depth_sigma_[i] = DepthSigma(camera, lines[i]);
+    }
+  }
+
+  // False when the two lines are not related.
+  bool Make(std::size_t b, std::size_t o, ImageLinePair& pair) const {
+    const Line3& base = lines_[b];
+    const Line3& other = lines_[o];
+    pair = {};
+    pair.base = static_cast<std::uint16_t>(b);
+    pair.other = static_cast<std::uint16_t>(o);
+    const float ends = NearestEnds(base.segment, other.segment, pair.base_end, pair.other_end);
+    const float reach = std::min(params_.junction_px, 4 + 0.3F * std::min(base.segment.Length(), other.segment.Length()));
+    const bool junction = ends < reach && ImageSine(base.segment, other.segment) > 0.2F;
+    if (!junction) pair.base_end = pair.other_end = LineEnd::kNone;
+    if (!other.has_depth) return junction;
+    pair.metric = true;
+    return Measure(b, o, pair);
+  }
+
+ private:
+  bool Measure(std::size_t b, std::size_t o, ImageLinePair& pair) const {
+    const Line3& base = lines_[b];
+    const Line3& other = lines_[o];
+    pair.farthest_end_m = FarthestEnds(base, other);
+    if (pair.farthest_end_m > params_.max_reach_m + 3 * (depth_sigma_[b] + depth_sigma_[o])) return false;
+    const Vector3 u = base.Direction(), v = other.Direction();
+    const float sine = std::min(1.0F, u.cross(v).norm());
+    const float cosine = std::abs(u.dot(v));
+    // atan2 of non-negative numbers by the rational approximation below: good to 0.005 rad, far below any sigma here.
+    pair.angle_rad = Angle(sine, cosine);
+    pair.angle_sigma_rad = std::sqrt(direction_sigma_[b] * direction_sigma_[b] + direction_sigma_[o] * direction_sigma_[o]);
+    pair.kind = pair.angle_rad < params_.parallel_rad + pair.angle_sigma_rad ? LineSetKind::kParallel : LineSetKind::kIntersecting;
+    pair.distance_m = DistanceOfLines(base, other, sine);
+    pair.distance_sigma_m = std::sqrt(depth_sigma_[b] * depth_sigma_[b] + depth_sigma_[o] * depth_sigma_[o]);
+    return true;
+  }
+
+  static float Angle(float sine, float cosine) {
+    const bool steep = sine > cosine;
+    const float t = steep ? cosine / sine : sine / cosine;
+    const float a = t * (0.78539816F + 0.273F * (1 - t));
+    return steep ? 1.57079633F - a : a;
+  }
+
+  const LineSetParams& params_;
+  const Lines3& lines_;
+  std::array<float, kMaxSegments> direction_sigma_{}, depth_sigma_{};
+};
+
+}  // namespace
+
+float DepthSigma(const RectifiedCamera& camera, const Line3& line) {
+  const auto z = static_cast<double>(0.5F * (line.a.z() + line.b.z()));
+  const auto variance = static_cast<double>(0.25F * (line.var_a + line.var_b + 2 * line.cov_ab));
+  return static_cast<float>(z * z / (camera.f * camera.baseline) * std::sqrt(std::max(variance, 0.0)));
+}
+
+float DirectionSigma(const RectifiedCamera& camera, const Line3& line) {
+  const auto z = static_cast<double>(0.5F * (line.a.z() + line.b.z()));
+  const auto variance = static_cast<double>(line.var_a + line.var_b - 2 * line.cov_ab);
+  const double depth_difference = z * z / (camera.f * camera.baseline) * std::sqrt(std::max(variance, 0.0));
+  // Of the part of the direction across the line of sight; what turns out of the image plane is what depth turns.
+  const double length = std::max(1e-4, static_cast<double>(line.Length()));
+  return static_cast<float>(std::min(1.5, depth_difference / length + static_cast<double>(line.segment.sigma_angle_rad)));
+}
+
+void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines, ImageLineSets& out) {
+  out.pairs.clear();
+  out.dropped = 0;
+  const PairMaker maker(params, camera, lines);
+  for (std::size_t b = 0; b < lines.size(); ++b) {
+    out.first[b] = static_cast<std::uint16_t>(out.pairs.size());
+    if (!lines[b].has_depth || lines[b].segment.Length() < params.min_depth_length_px) continue;
+    for (std::size_t o = 0; o < lines.size(); ++o) {
+      ImageLinePair pair;
+      if (o == b || !maker.Make(b, o, pair)) continue;
+      if (!out.pairs.try_push_back(pair)) ++out.dropped;
+    }
+  }
+  out.first[lines.size()] = static_cast<std::uint16_t>(out.pairs.size());
+}
+
+}  // namespace wirepose

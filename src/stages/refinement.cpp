@@ -1,0 +1,208 @@
+#include "stages/refinement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace wirepose {
+namespace {
+
+constexpr int kMaxRange = 16;
+
+// Bilinear value of a smoothed image. Requires 0 <= x < width - 1, 0 <= y < height - 1.
+float Sample(const SmoothPlane& plane, float x, float y) {
+  const int xi = static_cast<int>(x), yi = static_cast<int>(y);
+  const float fx = x - static_cast<float>(xi), fy = y - static_cast<float>(yi);
+  const std::int16_t* p = plane.data() + yi * kMaxImageWidth + xi;
+  const std::int16_t* q = p + kMaxImageWidth;
+  const auto v = [](std::int16_t s) { return static_cast<float>(s); };
+  const float top = v(p[0]) + fx * (v(p[1]) - v(p[0]));
+  const float bottom = v(q[0]) + fx * (v(q[1]) - v(q[0]));
+  return top + fy * (bottom - top);
+}
+
+// Signed distance along `normal` to the most plausible edge near `p`: strong and close. False when there is none.
+bool FindEdge(const SmoothPlane& plane, int width, int height, const Vector2& p, const Vector2& normal, int range,
+              float min_gradient, float& offset) {
+  const float reach = static_cast<float>(range + 2);
+  const float x0 = p.x() - reach * std::abs(normal.x()), x1 = p.x() + reach * std::abs(normal.x());
+  const float y0 = p.y() - reach * std::abs(normal.y()), y1 = p.y() + reach * std::abs(normal.y());
+  if (x0 < 1 || y0 < 1 || x1 > static_cast<float>(width - 3) || y1 > static_cast<float>(height - 3)) return false;
+  std::array<float, 2 * kMaxRange + 5> value;
+  const int n = 2 * range + 5;
+  for (int k = 0; k < n; ++k) {
+    const auto s = static_cast<float>(k - range - 2);
+    value[static_cast<std::size_t>(k)] = Sample(plane, p.x() + s * normal.x(), p.y() + s * normal.y());
+  }
+  const auto gradient = [&](int k) {
+    return std::abs(value[static_cast<std::size_t>(k + 1)] - value[static_cast<std::size_t>(k - 1)]);
+  };
+  const float threshold = min_gradient * kGradientOne;
+  float best = 0;
+  for (int k = 2; k < n - 2; ++k) {
+    const float here = gradient(k);
+    if (here < threshold) continue;
+    const float before = gradient(k - 1), after = gradient(k + 1);
+    if (here < before || here <= after) continue;
+    const float bend = before - 2 * here + after;
+    const float at = static_cast<float>(k - range - 2) + 0.5F * (before - after) / bend;
+    // Strength saturates: beyond some contrast nearness decides.
+    const float score = std::min(here, 8.0F * threshold) * (1 - 0.7F * std::abs(at) / static_cast<float>(range + 1));
+    if (score <= best) continue;
+    best = score;
+    offset = at;
+  }
+  return best > 0;
+}
+
+// One found offset with its derivative by the twist.
+struct Row {
+  Eigen::Matrix<double, 1, 6> J;
+  double residual = 0;  // px, image edge minus model edge along the normal
+  double weight = 0;
+  std::uint16_t edge = 0;
+};
+
+using Rows = FixedVector<Row, 2 * kMaxEdgeSamples>;
+
+class Refiner {
+ public:
+  Refiner(const RefineParams& params, const SceneImages& images, const PreparedModel& model, RefineScratch& scratch)
+      : params_(params), images_(images), model_(model), scratch_(scratch) {}
+
+  void Run(const Pose& start, RefinedPose& out) {
+    Pose T = start;
+    out = {};
+    out.T_camera_model = start;
+    for (int i = 0; i < params_.iterations; ++i) {
+      if (i % 3 == 0) SampleVisibleEdges({}, images_.camera, model_, T, scratch_.front, scratch_.samples);
+      const float share = static_cast<float>(i) / static_cast<float>(std::max(1, params_.iterations - 1));
+      // Halves early: the first iterations bring most edges close.
+      const float range = params_.first_range_px + (params_.last_range_px - params_.first_range_px) * std::sqrt(share);
+      const bool last = 3 * i >= 2 * params_.iterations;
+      Measure(T, std::clamp(static_cast<int>(range + 0.5F), 2, kMaxRange));
+      if (last) DropUnqualified();
+      Vector6d twist;
+      if (rows_.size() < 12 || !Solve(twist)) return;
+      T = PerturbLeft(T, twist, T.t);
+      if (!(T.t.z() > 0.05) || !twist.allFinite()) return;
+      if (last && twist.head<3>().norm() < 1e-4 && twist.tail<3>().norm() < 1e-5 * T.t.z()) break;
+    }
+    Finish(T, out);
+  }
+
+ private:
+  void Measure(const Pose& T, int range) {
+    rows_.clear();
+    found_.fill(0);
+    sampled_.fill(0);
+    for (const EdgeSample& s : scratch_.samples) {
+      const Vector3d p = T.R * s.point.cast<double>();
+      const Vector3d x = p + T.t;
+      MeasureIn(images_.left, 0, s.tangent, p, x, range, s.edge);
+      MeasureIn(images_.right, images_.camera.baseline, s.tangent_right, p, x, range, s.edge);
+    }
+  }
+
+  // `shift`: how far the camera stands to the right of the left one, m.
+  void MeasureIn(const SmoothPlane& plane, double shift, const Vector2& tangent, const Vector3d& p, const Vector3d& x,
+                 int range, std::uint16_t edge) {
+    const RectifiedCamera& c = images_.camera;
+    const double iz = 1 / x.z();
+    const Vector2 at(static_cast<float>(c.f * (x.x() - shift) * iz + c.cx), static_cast<float>(c.f * x.y() * iz + c.cy));
+    if (!(at.x() > 2 && at.y() > 2 && at.x() < static_cast<float>(c.width - 3) && at.y() < static_cast<float>(c.height - 3))) return;
+    ++sampled_[edge];
+    const Vector2 normal(-tangent.y(), tangent.x());
+    float offset = 0;
+    if (!FindEdge(plane, c.width, c.height, at, normal, range, params_.min_gradient, offset)) return;
+    Row row;
+    const auto nx = static_cast<double>(normal.x()), ny = static_cast<double>(normal.y());
+    // d(n . u)/dx of the point, then d(point)/d(twist) = [-[p]x, I] for a rotation about the model origin.
+    const Vector3d g(nx * c.f * iz, ny * c.f * iz, -(nx * c.f * (x.x() - shift) + ny * c.f * x.y()) * iz * iz);
+    row.J.head<3>() = p.cross(g).transpose();
+    row.J.tail<3>() = g.transpose();
+    row.residual = static_cast<double>(offset);
+    row.edge = edge;
+    rows_.push_back(row);
+    ++found_[edge];
+  }
+
+  void DropUnqualified() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const std::uint16_t e = rows_[i].edge;
+      if (static_cast<float>(found_[e]) >= params_.min_qualified_share * static_cast<float>(sampled_[e])) rows_[kept++] = rows_[i];
+    }
+    rows_.resize(kept);
+  }
+
+  // Robust scale: 1.48 times the median absolute residual.
+  double Scale() {
+    std::array<float, 2 * kMaxEdgeSamples> magnitude{};
+    const std::size_t n = rows_.size();
+    for (std::size_t i = 0; i < n; ++i) magnitude[i] = static_cast<float>(std::abs(rows_[i].residual));
+    const auto middle = magnitude.begin() + static_cast<std::ptrdiff_t>(n / 2);
+    std::nth_element(magnitude.begin(), middle, magnitude.begin() + static_cast<std::ptrdiff_t>(n));
+    return std::max(static_cast<double>(params_.sigma_floor_px), 1.4826 * static_cast<double>(*middle));
+  }
+
+  bool Solve(Vector6d& twist) {
+    sigma_ = Scale();
+    H_.setZero();
+    Vector6d g = Vector6d::Zero();
+    for (Row& row : rows_) {
+      const double r = row.residual / (2 * sigma_);
+      const double k = 1 / (1 + r * r);
+      row.weight = k * k;
+      H_ += row.weight * row.J.transpose() * row.J;
+      g += row.weight * row.residual * row.J.transpose();
+    }
+    // Levenberg damping: a thousandth of the mean information, so that what the edges do not tell stays put.
+    Matrix6d damped = H_;
+    for (int i = 0; i < 6; ++i) damped(i, i) *= 1.001;
+    const Eigen::LDLT<Matrix6d> ldlt(damped);
+    if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 1e-9)) return false;
+    twist = ldlt.solve(g);
+    // A step beyond 0.2 rad or a fifth of the distance has left what one linearisation can say.
+    const double size = std::max(twist.head<3>().norm() / 0.2, twist.tail<3>().norm() / 0.2);
+    if (size > 1) twist /= size;
+    return true;
+  }
+
+  void Finish(const Pose& T, RefinedPose& out) {
+    out.T_camera_model = T;
+    double sum = 0, weight = 0;
+    std::uint32_t inliers = 0;
+    for (const Row& row : rows_) {
+      sum += row.weight * row.residual * row.residual;
+      weight += row.weight;
+      if (std::abs(row.residual) < 3 * sigma_) ++inliers;
+    }
+    const Eigen::LDLT<Matrix6d> ldlt(H_);
+    if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 1e-9) || weight < 6) return;
+    const double s = static_cast<double>(params_.covariance_inflation) * sigma_;
+    out.covariance = s * s * ldlt.solve(Matrix6d::Identity());
+    out.covariance = (0.5 * (out.covariance + out.covariance.transpose())).eval();
+    out.rms_px = static_cast<float>(std::sqrt(sum / weight));
+    out.inliers = static_cast<std::uint16_t>(inliers);
+    out.ok = out.covariance.allFinite();
+  }
+
+  const RefineParams& params_;
+  const SceneImages& images_;
+  const PreparedModel& model_;
+  RefineScratch& scratch_;
+  Rows rows_;
+  std::array<std::uint16_t, kMaxModelEdges> found_{}, sampled_{};
+  Matrix6d H_ = Matrix6d::Zero();
+  double sigma_ = 1;
+};
+
+}  // namespace
+
+void RefinePose(const RefineParams& params, const SceneImages& images, const PreparedModel& model, const Pose& start,
+                RefineScratch& scratch, RefinedPose& out) {
+  Refiner(params, images, model, scratch).Run(start, out);
+}
+
+}  // namespace wirepose

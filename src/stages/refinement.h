@@ -1,0 +1,49 @@
+// Stage 7: local adjustment (paper section 4): the pose moves until the model's edges lie on the image's edges.
+#ifndef WIREPOSE_STAGES_REFINEMENT_H_
+#define WIREPOSE_STAGES_REFINEMENT_H_
+
+#include "stages/edge_image.h"
+#include "stages/sample_edges.h"
+
+namespace wirepose {
+
+struct RefineParams {
+  int iterations = 10;
+  float first_range_px = 12;   // 1D search along the edge normal; shrinks to last_range_px
+  float last_range_px = 4;
+  float min_gradient = 1.0F;   // grey levels per pixel: weaker edges are not followed
+  float min_qualified_share = 0.4F;  // an edge with less support than this does not pull in the last iterations
+  float sigma_floor_px = 0.3F;
+  float covariance_inflation = 2.0F;  // of the standard deviations: samples share their errors
+};
+
+// Smoothed rectified images.
+struct SceneImages {
+  const RectifiedCamera& camera;
+  const SmoothPlane& left;
+  const SmoothPlane& right;
+};
+
+struct RefineScratch {
+  EdgeSamples samples;
+  FrontTriangles front;
+};
+
+struct RefinedPose {
+  Pose T_camera_model;
+  Matrix6d covariance = Matrix6d::Identity();  // of PerturbLeft about the model origin: rotation, translation
+  float rms_px = 0;
+  std::uint16_t inliers = 0;  // samples of both images within three sigma
+  bool ok = false;            // enough edges were found and the normal matrix had full rank
+};
+
+// Robust Gauss-Newton on SE(3). The closest image feature of eq. 11 is searched along the normal of the projected edge
+// (RAPiD: Harris & Stennett 1990) in both images; all offsets enter one 6x6 normal matrix with Geman-McClure weights.
+// The search range shrinks from iteration to iteration; hidden lines are found anew every third. Only qualified
+// features count at the end: edges of which a good share was found. O(iterations * samples * range).
+void RefinePose(const RefineParams& params, const SceneImages& images, const PreparedModel& model, const Pose& start,
+                RefineScratch& scratch, RefinedPose& out);
+
+}  // namespace wirepose
+
+#endif  // WIREPOSE_STAGES_REFINEMENT_H_

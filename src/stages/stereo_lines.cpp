@@ -1,0 +1,278 @@
+#include "stages/stereo_lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wirepose {
+namespace {
+
+constexpr int kStride = kMaxImageWidth;
+constexpr int kStripWidth = 7;
+constexpr int kStripOverlap = 1;  // columns of the strip beyond the edge: the edge must be in the strip
+constexpr std::uint16_t kNoCost = 0xFFFF / kMaxStereoRows;  // of one row: outside of the right image
+
+// A row that the segment crosses.
+struct RowSample {
+  int y;
+  float x;  // of the edge, sub-pixel
+  float t;  // position along the segment: 0 at a, 1 at b
+};
+using RowSamples = FixedVector<RowSample, kMaxImageHeight>;
+
+// Every row between the end points, or `limit` of them evenly spread.
+RowSamples CrossedRows(const Segment2& s, int limit) {
+  RowSamples rows;
+  const float y0 = std::min(s.a.y(), s.b.y());
+  const float y1 = std::max(s.a.y(), s.b.y());
+  const int first = static_cast<int>(std::ceil(y0));
+  const int last = static_cast<int>(std::floor(y1));
+  const int count = last - first + 1;
+  const int used = std::min(count, limit);
+  for (int k = 0; k < used; ++k) {
+    const int y = used == count ? first + k : first + (2 * k + 1) * count / (2 * used);
+    const float t = (static_cast<float>(y) - s.a.y()) / (s.b.y() - s.a.y());
+    rows.push_back({y, s.a.x() + t * (s.b.x() - s.a.x()), t});
+  }
+  return rows;
+}
+
+struct Match {
+  float disparity_a = 0, disparity_b = 0;
+  float cost = 0;        // per row, SAD of 7 px
+  float cost_ratio = 1;  // best over best elsewhere
+  bool found = false;
+};
+
+// Fills scratch.cost[row][d] for the strip that starts at column offset `begin` from the edge.
+void FillCosts(const StereoInput& in, const RowSamples& rows, int begin, StereoScratch& scratch) {
+  const int width = in.camera.width;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const int x0 = static_cast<int>(std::floor(rows[r].x + 0.5F)) + begin;
+    auto& cost = scratch.cost[r];
+    if (x0 < 0 || x0 + kStripWidth > width) {
+      cost.fill(kNoCost);
+      continue;
+    }
+    const std::uint8_t* left = in.left.data() + rows[r].y * kStride + x0;
+    const std::uint8_t* right = in.right.data() + rows[r].y * kStride;
+    // Right strip starts at x0 - d; count down so that memory runs up.
+    const int reachable = std::min(kMaxDisparity, x0 + 1);
+    std::array<std::uint16_t, kMaxDisparity> reversed{};
+    const std::uint8_t* start = right + x0 - (reachable - 1);
+    for (int j = 0; j < kStripWidth; ++j) {
+      const int l = left[j];
+      for (int k = 0; k < reachable; ++k) {
+        const int difference = l - start[k + j];
+        reversed[static_cast<std::size_t>(k)] = static_cast<std::uint16_t>(
+            reversed[static_cast<std::size_t>(k)] + static_cast<std::uint16_t>(std::abs(difference)));
+      }
+    }
+    for (int d = 0; d < reachable; ++d) {
+      cost[static_cast<std::size_t>(d)] = reversed[static_cast<std::size_t>(reachable - 1 - d)];
+    }
+    std::fill(cost.begin() + reachable, cost.end(), kNoCost);
+  }
+}
+
+// Smallest cost over all (middle disparity, slope). Slopes advance such that the ends move by one pixel.
+Match SearchDisparity(const StereoLineParams& params, const Segment2& segment, const RowSamples& rows,
+                      StereoScratch& scratch) {
+  Match match;
+  const float reach = 0.5F * params.max_disparity_slope * segment.Length();  // of an end against the middle
+  const int steps = std::min(12, static_cast<int>(reach));
+  scratch.best_at.fill(0xFFFF);
+  std::uint32_t best = 0xFFFF;
+  for (int s = -steps; s <= steps; ++s) {
+    scratch.sum.fill(0);
+    int low = 0, high = 0;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      // Disparity at this row minus that of the middle, rounded.
+      const int shift = static_cast<int>(std::floor((2 * rows[r].t - 1) * static_cast<float>(s) + 0.5F));
+      low = std::min(low, shift);
+      high = std::max(high, shift);
+      const int d0 = std::max(0, -shift);
+      const int d1 = std::min(kMaxDisparity, kMaxDisparity - shift);
+      const std::uint16_t* cost = scratch.cost[r].data() + shift;
+      for (int d = d0; d < d1; ++d) {
+        scratch.sum[static_cast<std::size_t>(d)] = static_cast<std::uint16_t>(scratch.sum[static_cast<std::size_t>(d)] + cost[d]);
+      }
+    }
+    for (int d = 1 - low; d < kMaxDisparity - high; ++d) {
+      const std::uint16_t c = scratch.sum[static_cast<std::size_t>(d)];
+      scratch.best_at[static_cast<std::size_t>(d)] = std::min(scratch.best_at[static_cast<std::size_t>(d)], c);
+      if (c >= best) continue;
+      best = c;
+      match.disparity_a = static_cast<float>(d - s);
+      match.disparity_b = static_cast<float>(d + s);
+    }
+  }
+  const auto n = static_cast<float>(rows.size());
+  if (static_cast<float>(best) >= 0.8F * static_cast<float>(kNoCost) * n) return match;
+  const float middle = 0.5F * (match.disparity_a + match.disparity_b);
+  std::uint32_t second = 0xFFFF;
+  for (int d = 0; d < kMaxDisparity; ++d) {
+    if (std::abs(static_cast<float>(d) - middle) > 2.5F) second = std::min<std::uint32_t>(second, scratch.best_at[static_cast<std::size_t>(d)]);
+  }
+  match.cost = static_cast<float>(best) / n;
+  match.cost_ratio = (static_cast<float>(best) + n) / (static_cast<float>(second) + n);
+  match.found = true;
+  return match;
+}
+
+// Where the right image's gradient along x peaks with the left edge's polarity, nearest to x; negative when nowhere.
+float FindEdgeInRow(const SmoothPlane& smooth, int y, float x, float reach, int sign, int width) {
+  const std::int16_t* row = smooth.data() + y * kStride;
+  const auto gradient = [&](int i) { return sign * (row[i + 1] - row[i - 1]); };
+  const int i0 = std::max(2, static_cast<int>(std::ceil(x - reach)));
+  const int i1 = std::min(width - 3, static_cast<int>(std::floor(x + reach)));
+  float best = -1, nearest = reach + 1;
+  for (int i = i0; i <= i1; ++i) {
+    const int here = gradient(i);
+    if (here < kGradientOne / 2) continue;
+    const int before = gradient(i - 1);
+    const int after = gradient(i + 1);
+    if (here < before || here <= after) continue;
+    const auto bend = static_cast<float>(before - 2 * here + after);
+    const float at = static_cast<float>(i) + 0.5F * static_cast<float>(before - after) / bend;
+    if (std::abs(at - x) >= nearest) continue;
+    nearest = std::abs(at - x);
+    best = at;
+  }
+  return best;
+}
+
+// Weighted straight line d(t) = p + q (t - 1/2).
+struct DisparityFit {
+  double p = 0, q = 0;
+  double h00 = 0, h01 = 0, h11 = 0;  // normal matrix of (p, q)
+  double residual = 0;               // robust sigma, px
+  double weight = 0;                 // sum of weights: rows that agree
+};
+
+struct DisparitySample {
+  float t, d;
+};
+using DisparitySamples = FixedVector<DisparitySample, kMaxImageHeight>;
+
+// Iteratively reweighted (Geman-McClure, scale 0.5 px) least squares, started at the coarse match.
+DisparityFit FitDisparity(const DisparitySamples& samples, const Match& start) {
+  DisparityFit fit;
+  fit.p = 0.5 * static_cast<double>(start.disparity_a + start.disparity_b);
+  fit.q = static_cast<double>(start.disparity_b - start.disparity_a);
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    const double scale = iteration < 2 ? 1.0 : 0.5;
+    double h00 = 0, h01 = 0, h11 = 0, g0 = 0, g1 = 0, sum = 0;
+    for (const DisparitySample& s : samples) {
+      const double u = static_cast<double>(s.t) - 0.5;
+      const double e = static_cast<double>(s.d) - fit.p - fit.q * u;
+      const double k = 1 / (1 + e * e / (scale * scale));
+      const double w = k * k;
+      h00 += w;
+      h01 += w * u;
+      h11 += w * u * u;
+      g0 += w * e;
+      g1 += w * u * e;
+      sum += w * e * e;
+    }
+    // The prior keeps the slope where the rows do not tell it: half a pixel over the line.
+    const double regularised = h11 + 0.02;
+    const double det = h00 * regularised - h01 * h01;
+    if (det < 1e-9) break;
+    fit.p += (regularised * g0 - h01 * g1) / det;
+    fit.q += (h00 * g1 - h01 * g0) / det;
+    fit.h00 = h00;
+    fit.h01 = h01;
+    fit.h11 = h11;
+    fit.weight = h00;
+    fit.residual = std::sqrt(sum / std::max(h00, 1e-9));
+  }
+  return fit;
+}
+
+// Replaces the coarse match by the edge's own position in the right image, with covariance.
+void Refine(const StereoLineParams& params, const StereoInput& in, const Match& match, Line3& line) {
+  const RowSamples rows = CrossedRows(line.segment, kMaxImageHeight);
+  const int sign = line.segment.Normal().x() > 0 ? 1 : -1;  // the normal points to the brighter side
+  DisparitySamples samples;
+  for (const RowSample& row : rows) {
+    const float d = match.disparity_a + row.t * (match.disparity_b - match.disparity_a);
+    const float x = FindEdgeInRow(in.right_smooth, row.y, row.x - d, params.search_px, sign, in.camera.width);
+    if (x >= 0) samples.push_back({row.t, row.x - x});
+  }
+  const double sigma_offset = static_cast<double>(line.segment.sigma_offset_px);
+  double p = 0.5 * static_cast<double>(match.disparity_a + match.disparity_b);
+  double q = static_cast<double>(match.disparity_b - match.disparity_a);
+  double var_p = static_cast<double>(params.coarse_sigma_px * params.coarse_sigma_px), var_q = 4 * var_p, cov = 0;
+  const DisparityFit fit = FitDisparity(samples, match);
+  const auto n = static_cast<double>(rows.size());
+  if (fit.weight >= static_cast<double>(params.min_support) * n && fit.weight >= 5) {
+    p = fit.p;
+    q = fit.q;
+    const double sigma = static_cast<double>(params.sigma_inflation) * std::max(fit.residual, 0.05);
+    const double det = fit.h00 * fit.h11 - fit.h01 * fit.h01;
+    const double floor = static_cast<double>(params.sigma_floor_px * params.sigma_floor_px) + sigma_offset * sigma_offset;
+    var_p = sigma * sigma * fit.h11 / std::max(det, 1e-9) + floor;
+    var_q = sigma * sigma * fit.h00 / std::max(det, 1e-9) + 4 * floor;
+    cov = -sigma * sigma * fit.h01 / std::max(det, 1e-9);
+  }
+  line.disparity_a_px = static_cast<float>(p - 0.5 * q);
+  line.disparity_b_px = static_cast<float>(p + 0.5 * q);
+  line.var_a = static_cast<float>(var_p + 0.25 * var_q - cov);
+  line.var_b = static_cast<float>(var_p + 0.25 * var_q + cov);
+  line.cov_ab = static_cast<float>(var_p - 0.25 * var_q);
+}
+
+// Which side the depth belongs to; false when neither side's match can be trusted.
+bool ChooseSide(const StereoLineParams& params, const Match& bright, const Match& dark, Match& out, LineOwner& owner) {
+  const auto middle = [](const Match& m) { return 0.5F * (m.disparity_a + m.disparity_b); };
+  if (bright.found && dark.found && std::abs(middle(bright) - middle(dark)) < params.side_agreement_px + 0.5F &&
+      std::min(bright.cost_ratio, dark.cost_ratio) < 0.95F) {
+    out = bright.cost_ratio <= dark.cost_ratio ? bright : dark;
+    owner = LineOwner::kBoth;
+    return true;
+  }
+  const bool choose_bright = bright.found && (!dark.found || bright.cost_ratio <= dark.cost_ratio);
+  out = choose_bright ? bright : dark;
+  owner = choose_bright ? LineOwner::kBright : LineOwner::kDark;
+  return out.found && out.cost_ratio < params.max_cost_ratio;
+}
+
+void MatchLine(const StereoLineParams& params, const StereoInput& in, StereoScratch& scratch, Line3& line) {
+  const Segment2& segment = line.segment;
+  const Vector2 delta = segment.Delta();
+  if (std::abs(delta.y()) < params.min_slope * segment.Length()) return;
+  const RowSamples rows = CrossedRows(segment, kMaxStereoRows);
+  if (rows.size() < 4) return;
+  // Columns to the right of the edge belong to the bright side when the normal points right.
+  const bool bright_is_right = segment.Normal().x() > 0;
+  FillCosts(in, rows, -kStripOverlap, scratch);
+  const Match right = SearchDisparity(params, segment, rows, scratch);
+  FillCosts(in, rows, kStripOverlap - kStripWidth + 1, scratch);
+  const Match left = SearchDisparity(params, segment, rows, scratch);
+  Match match;
+  if (!ChooseSide(params, bright_is_right ? right : left, bright_is_right ? left : right, match, line.owner)) return;
+  Refine(params, in, match, line);
+  if (line.disparity_a_px < 1 || line.disparity_b_px < 1) return;
+  const auto point = [&](const Vector2& p, float d) {
+    return in.camera.Triangulate(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(d)).cast<float>();
+  };
+  line.a = point(segment.a, line.disparity_a_px);
+  line.b = point(segment.b, line.disparity_b_px);
+  line.has_depth = true;
+}
+
+}  // namespace
+
+void MatchLines(const StereoLineParams& params, const StereoInput& input, const Segments& segments,
+                StereoScratch& scratch, Lines3& out) {
+  out.clear();
+  for (const Segment2& segment : segments.items) {
+    Line3 line;
+    line.id = static_cast<std::uint16_t>(out.size());
+    line.segment = segment;
+    MatchLine(params, input, scratch, line);
+    out.push_back(line);
+  }
+}
+
+}  // namespace wirepose
