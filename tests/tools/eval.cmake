@@ -13,3 +13,6 @@ wirepose_test(eval_cli_test SOURCES eval_cli_test.cpp eval_dataset.cpp
   LIBRARIES wirepose_evaluation nlohmann_json::nlohmann_json fmt::fmt)
 target_compile_definitions(eval_cli_test PRIVATE WIREPOSE_PROGRAM="$<TARGET_FILE:wirepose>")
 add_dependencies(eval_cli_test wirepose)
+
+wirepose_test(eval_streams_test SOURCES eval_streams_test.cpp eval_dataset.cpp
+  LIBRARIES wirepose_evaluation fmt::fmt nlohmann_json::nlohmann_json)
