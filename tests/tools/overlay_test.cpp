@@ -104,7 +104,7 @@ bool IsColoured(const cv::Mat& image, int x, int y) {
 TEST_F(OverlayTest, OfNothingIsTheImageTwice) {
   const cv::Mat image = DrawOverlay(input_);
   EXPECT_EQ(image.size(), cv::Size(2 * 2 * 640, 2 * 480));
-  EXPECT_EQ(image.at<cv::Vec3b>(500, 700), cv::Vec3b(70, 70, 70));
+  EXPECT_EQ(image.at<cv::Vec3b>(500, 700), cv::Vec3b(90, 90, 90));
 }
 
 TEST_F(OverlayTest, ShowsLinesBySideAndDepth) {

@@ -60,15 +60,17 @@ void DrawText(cv::Mat& canvas, const std::string& text, const cv::Point& at,
   cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.6, colour, 1, cv::LINE_AA);
 }
 
-// The image, enlarged and darkened: lines must stand out.
+// The image, enlarged and brought to one middling brightness: lines must stand out in any light.
 cv::Mat Background(ImageView image) {
+  constexpr double kMeanLevel = 90;
   cv::Mat grey(image.height, image.width, CV_8UC1);
   for (int y = 0; y < image.height; ++y) {
     std::copy_n(image.row(y), image.width, grey.ptr(y));
   }
   cv::Mat canvas;
   cv::resize(grey, canvas, {}, kEnlarge, kEnlarge, cv::INTER_LINEAR);
-  cv::cvtColor(canvas * 0.7, canvas, cv::COLOR_GRAY2BGR);
+  const double gain = std::clamp(kMeanLevel / std::max(cv::mean(grey)[0], 1.0), 0.5, 2.0);
+  cv::cvtColor(canvas * gain, canvas, cv::COLOR_GRAY2BGR);
   return canvas;
 }
 
@@ -143,7 +145,8 @@ cv::Mat DrawLines(const OverlayInput& in) {
 void DrawObject(cv::Mat& canvas, const OverlayObject& object, const RectifiedCamera& camera) {
   const bool found = object.kind == PoseKind::kFound;
   const cv::Scalar colour = found ? kFoundColour : kTruthColour;
-  cv::Point2d top(camera.cx, camera.height);
+  cv::Point2d sum(0, 0);
+  int visible = 0;
   for (const EdgePiece& piece : CutEdges(object.model, object.T_rectified_model)) {
     const Vector3d a = camera.Project(piece.a);
     const Vector3d b = camera.Project(piece.b);
@@ -151,18 +154,17 @@ void DrawObject(cv::Mat& canvas, const OverlayObject& object, const RectifiedCam
     const cv::Point2d to(b.x(), b.y());
     if (piece.hidden) {
       DrawDashed(canvas, from, to, colour);
-    } else {
-      DrawLine(canvas, from, to, colour, found ? 2 : 1);
+      continue;
     }
-    for (const cv::Point2d& p : {from, to}) {
-      if (p.y < top.y) top = p;
-    }
+    DrawLine(canvas, from, to, colour, found ? 2 : 1);
+    sum += 0.5 * (from + to);
+    ++visible;
   }
-  if (object.label.empty()) return;
-  cv::Point at(static_cast<int>(std::lround(top.x * kEnlarge)),
-               static_cast<int>(std::lround(top.y * kEnlarge)));
-  at.x = std::clamp(at.x - 40, 4, canvas.cols - 200);
-  at.y = std::clamp(at.y + (found ? -8 : 14), 76, canvas.rows - 24);
+  if (object.label.empty() || visible == 0) return;
+  const cv::Point2d middle = sum / visible * kEnlarge;
+  const cv::Point at(
+      std::clamp(static_cast<int>(std::clamp(middle.x, 0.0, 1e4)) - 60, 4, canvas.cols - 200),
+      std::clamp(static_cast<int>(std::clamp(middle.y, 0.0, 1e4)), 76, canvas.rows - 24));
   DrawText(canvas, object.label, at, colour);
 }
 
