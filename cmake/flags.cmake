@@ -18,9 +18,7 @@ endif()
 add_library(wirepose_warnings INTERFACE)
 target_compile_options(wirepose_warnings INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual
-                            -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Werror>
-  # GCC 12 sees dangling pointers in Eigen's expression templates where there are none.
-  $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-Wno-dangling-pointer>)
+                            -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Werror>)
 
 # Rules of the recognizer core. Private to its rooms: the host side may use exceptions and RTTI.
 add_library(wirepose_core_rules INTERFACE)

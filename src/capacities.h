@@ -22,8 +22,8 @@ inline constexpr std::size_t kMaxRidgePixels = 51200;
 // One connected edge; longer than any straight line in the image.
 inline constexpr std::size_t kMaxChain = 2048;
 
-// Related pairs of image lines. 100 lines with depth have some 4 neighbours at junctions and 15 others within reach.
-inline constexpr std::size_t kMaxImageLinePairs = 6144;
+// Related pairs of image lines: 150 lines with depth make 11,000 pairs; only clutter of small tiles has more.
+inline constexpr std::size_t kMaxImageLinePairs = 12288;
 // Corresponding line sets kept per model, by rank: the paper's "small number".
 inline constexpr std::size_t kMaxCorrespondences = 4096;
 inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose

@@ -1,6 +1,7 @@
 #include "stages/correspondences.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace wirepose {
@@ -35,12 +36,16 @@ class Matcher {
       const PreparedEdge& edge = model_.edges[set.base_edge];
       if (!edge.representative || !Fits(length, slack, edge.length_m, params_.min_cover)) continue;
       base_cover_ = std::min(1.0F, length / edge.length_m);
+      // Both sets of one base edge are combined, since they share it (paper: "combined if they share a line").
+      if (set.base_edge != assigned_edge_) Promote();
+      assigned_edge_ = set.base_edge;
       for (const ImageLinePair& pair : sets_.OfBase(base)) {
         if (pair.metric && pair.kind != set.kind) continue;
         if (!pair.metric && set.kind != LineSetKind::kIntersecting) continue;
         MatchPair(set, pair);
       }
     }
+    Promote();
   }
 
  private:
@@ -80,22 +85,46 @@ class Matcher {
     match.image_pair = static_cast<std::uint16_t>(&pair - sets_.pairs.data());
     match.base_edge = set.base_edge;
     match.other_edge = member.edge;
-    match.rank = base_cover_ + (pair.metric ? 0.5F : 0.0F);
+    match.rank = base_cover_;
+    if (pair.metric) match.rank += std::min(1.0F, lines_[pair.other].Length() / model_.edges[member.edge].length_m);
     if (pair.base_end != LineEnd::kNone && member.nearest_end_m < Near()) {
       const Corner corner = SharedCorner(model_.edges[set.base_edge], model_.edges[member.edge], Near());
       if (corner.base != LineEnd::kNone) {
         match.junction = 1;
         match.base_flipped = corner.base == pair.base_end ? 0 : 1;
         match.rank += 0.5F;
-        out_.Push(match);
+        Collect(match);
         return;
       }
     }
     if (!pair.metric) return;
     for (std::uint8_t flipped : {0, 1}) {
       match.base_flipped = flipped;
+      Collect(match);
+    }
+  }
+
+  void Collect(const CorrespondingPair& match) {
+    if (!matches_.try_push_back(match)) ++out_of_room_;
+    EdgeBits& edges = edges_[match.base_flipped];
+    edges[match.other_edge / 32] |= 1U << (match.other_edge % 32);
+  }
+
+  // Corresponding sets that share the base line and its edge are promoted: each ranks by the number of model edges
+  // that found an image line under this assignment.
+  void Promote() {
+    float promotion[2];
+    for (std::size_t flip = 0; flip < 2; ++flip) {
+      int count = 0;
+      for (const std::uint32_t word : edges_[flip]) count += std::popcount(word);
+      promotion[flip] = params_.promotion * static_cast<float>(std::min(count, 16));
+      edges_[flip] = {};
+    }
+    for (CorrespondingPair& match : matches_) {
+      match.rank += promotion[match.base_flipped];
       out_.Push(match);
     }
+    matches_.clear();
   }
 
   const CorrespondenceParams& params_;
@@ -104,7 +133,12 @@ class Matcher {
   const Lines3& lines_;
   const ImageLineSets& sets_;
   CorrespondingPairs& out_;
+  // Of the base line and base edge at hand.
   float base_cover_ = 0;
+  std::uint16_t assigned_edge_ = kNoFace;
+  FixedVector<CorrespondingPair, 2048> matches_;
+  EdgeBits edges_[2] = {};
+  std::uint32_t out_of_room_ = 0;
 };
 
 }  // namespace

@@ -17,6 +17,7 @@ struct CorrespondenceParams {
   float angle_tolerance_rad = 0.06F;
   float min_cover = 0.3F;        // share of the base edge that its image line must cover
   float min_other_cover = 0.2F;  // the same of the other edge
+  float promotion = 0.15F;       // rank gained by each model edge that finds a line under one base assignment
 };
 
 // The smallest corresponding line set: an image pair and the model pair that shares its parameter vector.

@@ -13,9 +13,9 @@ namespace wirepose {
 
 struct EdgeImageParams {
   // A ridge pixel's gradient must exceed this multiple of the image's gradient noise ...
-  float noise_factor = 3.0F;
+  float noise_factor = 2.3F;
   // ... and this floor [grey levels per pixel], below which 8 bit quantisation makes edges of its own.
-  float min_gradient = 0.75F;
+  float min_gradient = 0.6F;
 };
 
 // Fixed point of the smoothed image: grey levels times 16, exactly what the 5-tap binomial filter leaves.

@@ -73,6 +73,8 @@ class HypothesisMaker {
     const float nd = n.dot(d1_);
     const float k = std::sqrt(std::max(0.0F, 1 - nd * nd));
     const float s = std::sqrt(1 - c * c);
+    // Seen along the base line's own plane the angle tells little about the direction: there the length must help.
+    if (match.junction != 0 && k < 0.6F) MakeFromLength(c, pair, match);
     if (k < 0.05F) return;
     const float cosine = -c * nd / (s * k);
     if (std::abs(cosine) > 1.03F) return;
@@ -92,6 +94,34 @@ class HypothesisMaker {
       } else if (match.junction != 0) {
         AlignEnd(t0, pair.base_end, match.base_flipped != 0);
       }
+    }
+  }
+
+  // From a junction whose other segment shows its edge in full length: the far end lies on the ray of the segment's far
+  // end at the edge's length from the corner, which has two solutions; that the angle comes out right proves them.
+  void MakeFromLength(float c, const ImageLinePair& pair, const CorrespondingPair& match) {
+    const Vector3 corner = pair.base_end == LineEnd::kA ? base_->a : base_->b;
+    const Vector2 far = pair.other_end == LineEnd::kA ? other_->segment.b : other_->segment.a;
+    const Vector3 ray = Vector3((far.x() - cx_) / f_, (far.y() - cy_) / f_, 1).normalized();
+    const float along = ray.dot(corner);
+    const float length = other_edge_->length_m;
+    const float room = length * length - (corner.squaredNorm() - along * along);
+    if (room < -0.1F * length * length) return;
+    const float root = std::sqrt(std::max(0.0F, room));
+    // The model edge leaves the corner forwards or backwards.
+    const PreparedEdge& base = *base_edge_;
+    const bool corner_is_a = (pair.base_end == LineEnd::kA) != (match.base_flipped != 0);
+    const Vector3 model_corner = corner_is_a ? base.a : base.b;
+    const bool forwards = (other_edge_->a - model_corner).squaredNorm() < (other_edge_->b - model_corner).squaredNorm();
+    const Vector3 m2 = forwards ? other_edge_->direction : Vector3(-other_edge_->direction);
+    const float expected = forwards ? c : -c;
+    for (float sign : {1.0F, -1.0F}) {
+      const Vector3 d2 = ((along + sign * root) * ray - corner).normalized();
+      if (std::abs(d2.dot(d1_) - expected) > params_.length_angle_tolerance) continue;
+      hypothesis_.R = RotationOf(m1_, m2, d1_, d2);
+      const Vector3 t0 = 0.5F * (base_->a + base_->b) - hypothesis_.R * (0.5F * (base.a + base.b));
+      hypothesis_.t = t0 + (corner - hypothesis_.R * model_corner - t0).dot(d1_) * d1_;
+      Score();
     }
   }
 

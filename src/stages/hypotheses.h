@@ -13,6 +13,7 @@ struct HypothesisParams {
   float end_tolerance_px = 5;      // a segment may overrun its projected edge by this much ...
   float end_tolerance_share = 0.08F;  // ... or by this share of it
   float direction_tolerance_rad = 0.15F;  // between the solved and the measured direction of the other line
+  float length_angle_tolerance = 0.2F;    // cosine error up to which a direction solved from a length is believed
   float min_depth_m = 0.15F;       // of the object's centre
   float min_inside = 0.4F;         // share of the visible edge length that lies in the image
   float sample_step_px = 6;

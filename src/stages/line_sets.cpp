@@ -126,7 +126,8 @@ void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, co
     if (!lines[b].has_depth || lines[b].segment.Length() < params.min_depth_length_px) continue;
     for (std::size_t o = 0; o < lines.size(); ++o) {
       ImageLinePair pair;
-      if (o == b || !maker.Make(b, o, pair)) continue;
+      // Of two lines with depth the longer one, which comes first, is the base: model sets hold both orders.
+      if (o == b || (o < b && lines[o].has_depth) || !maker.Make(b, o, pair)) continue;
       if (!out.pairs.try_push_back(pair)) ++out.dropped;
     }
   }

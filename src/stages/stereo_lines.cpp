@@ -43,8 +43,28 @@ struct Match {
   bool found = false;
 };
 
-// Fills scratch.cost[row][d] for the strip that starts at column offset `begin` from the edge.
-void FillCosts(const StereoInput& in, const RowSamples& rows, int begin, StereoScratch& scratch) {
+// Adds |left - right| of one pixel row of a strip to the costs of all disparities it can have. `cost` counts down from
+// disparity `reachable - 1`, so that memory runs up.
+void AddRow(const std::uint8_t* left, const std::uint8_t* right, int count, int reachable, std::uint16_t* cost) {
+  for (int j = 0; j < count; ++j) {
+    const int l = left[j];
+    for (int k = 0; k < reachable; ++k) {
+      cost[k] = static_cast<std::uint16_t>(cost[k] + static_cast<std::uint16_t>(std::abs(l - right[k + j])));
+    }
+  }
+}
+
+// Writes costs that were counted down in the order of disparity; unreachable disparities cost kNoCost.
+void StoreReversed(const std::array<std::uint16_t, kMaxDisparity>& reversed, int reachable,
+                   std::array<std::uint16_t, kMaxDisparity>& cost) {
+  for (int d = 0; d < reachable; ++d) {
+    cost[static_cast<std::size_t>(d)] = std::min(kNoCost, reversed[static_cast<std::size_t>(reachable - 1 - d)]);
+  }
+  std::fill(cost.begin() + reachable, cost.end(), kNoCost);
+}
+
+// Steep lines: scratch.cost[row][d] for the strip that starts at column offset `begin` from the edge.
+void FillRowCosts(const StereoInput& in, const RowSamples& rows, int begin, StereoScratch& scratch) {
   const int width = in.camera.width;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const int x0 = static_cast<int>(std::floor(rows[r].x + 0.5F)) + begin;
@@ -53,25 +73,50 @@ void FillCosts(const StereoInput& in, const RowSamples& rows, int begin, StereoS
       cost.fill(kNoCost);
       continue;
     }
-    const std::uint8_t* left = in.left.data() + rows[r].y * kStride + x0;
-    const std::uint8_t* right = in.right.data() + rows[r].y * kStride;
-    // Right strip starts at x0 - d; count down so that memory runs up.
     const int reachable = std::min(kMaxDisparity, x0 + 1);
     std::array<std::uint16_t, kMaxDisparity> reversed{};
-    const std::uint8_t* start = right + x0 - (reachable - 1);
-    for (int j = 0; j < kStripWidth; ++j) {
-      const int l = left[j];
-      for (int k = 0; k < reachable; ++k) {
-        const int difference = l - start[k + j];
-        reversed[static_cast<std::size_t>(k)] = static_cast<std::uint16_t>(
-            reversed[static_cast<std::size_t>(k)] + static_cast<std::uint16_t>(std::abs(difference)));
-      }
-    }
-    for (int d = 0; d < reachable; ++d) {
-      cost[static_cast<std::size_t>(d)] = reversed[static_cast<std::size_t>(reachable - 1 - d)];
-    }
-    std::fill(cost.begin() + reachable, cost.end(), kNoCost);
+    const std::ptrdiff_t row = rows[r].y * kStride;
+    AddRow(in.left.data() + row + x0, in.right.data() + row + x0 - (reachable - 1), kStripWidth, reachable, reversed.data());
+    StoreReversed(reversed, reachable, cost);
   }
+}
+
+// Flat lines: samples lie along the columns, the strip reaches from the edge up or down, starting at row offset
+// `begin`, and is three columns wide. It extends past the ends, where the line's end itself is what can be matched.
+void FillColumnCosts(const StereoInput& in, const RowSamples& columns, int begin, StereoScratch& scratch) {
+  constexpr int kColumns = 3;
+  for (std::size_t r = 0; r < columns.size(); ++r) {
+    const int x0 = static_cast<int>(std::floor(columns[r].x + 0.5F)) - kColumns / 2;
+    const int y0 = columns[r].y + begin;
+    auto& cost = scratch.cost[r];
+    if (x0 < 0 || x0 + kColumns > in.camera.width || y0 < 0 || y0 + kStripWidth > in.camera.height) {
+      cost.fill(kNoCost);
+      continue;
+    }
+    const int reachable = std::min(kMaxDisparity, x0 + 1);
+    std::array<std::uint16_t, kMaxDisparity> reversed{};
+    for (int y = y0; y < y0 + kStripWidth; ++y) {
+      const std::ptrdiff_t row = y * kStride;
+      AddRow(in.left.data() + row + x0, in.right.data() + row + x0 - (reachable - 1), kColumns, reachable, reversed.data());
+    }
+    for (std::uint16_t& c : reversed) c = static_cast<std::uint16_t>(c / kColumns);
+    StoreReversed(reversed, reachable, cost);
+  }
+}
+
+// Points along a flat line and kFlatExtension px past both of its ends.
+RowSamples FlatSamples(const Segment2& s) {
+  constexpr float kFlatExtension = 4;
+  RowSamples samples;
+  const float length = s.Length();
+  const int n = std::clamp(static_cast<int>((length + 2 * kFlatExtension) / 3), 6, kMaxStereoRows);
+  for (int k = 0; k < n; ++k) {
+    const float along = -kFlatExtension + (static_cast<float>(k) + 0.5F) * (length + 2 * kFlatExtension) / static_cast<float>(n);
+    const float t = along / length;
+    const Vector2 p = s.a + t * s.Delta();
+    samples.push_back({static_cast<int>(std::floor(p.y() + 0.5F)), p.x(), t});
+  }
+  return samples;
 }
 
 // Smallest cost over all (middle disparity, slope). Slopes advance such that the ends move by one pixel.
@@ -189,6 +234,14 @@ DisparityFit FitDisparity(const DisparitySamples& samples, const Match& start) {
   return fit;
 }
 
+// Takes the match as it is, with the given standard deviation at each end.
+void SetCoarse(float sigma_px, const Match& match, Line3& line) {
+  line.disparity_a_px = match.disparity_a;
+  line.disparity_b_px = match.disparity_b;
+  line.var_a = line.var_b = sigma_px * sigma_px;
+  line.cov_ab = 0;
+}
+
 // Replaces the coarse match by the edge's own position in the right image, with covariance.
 void Refine(const StereoLineParams& params, const StereoInput& in, const Match& match, Line3& line) {
   const RowSamples rows = CrossedRows(line.segment, kMaxImageHeight);
@@ -223,10 +276,11 @@ void Refine(const StereoLineParams& params, const StereoInput& in, const Match& 
 }
 
 // Which side the depth belongs to; false when neither side's match can be trusted.
-bool ChooseSide(const StereoLineParams& params, const Match& bright, const Match& dark, Match& out, LineOwner& owner) {
+bool ChooseSide(const StereoLineParams& params, const Match& bright, const Match& dark, float max_ratio, Match& out,
+                LineOwner& owner) {
   const auto middle = [](const Match& m) { return 0.5F * (m.disparity_a + m.disparity_b); };
   if (bright.found && dark.found && std::abs(middle(bright) - middle(dark)) < params.side_agreement_px + 0.5F &&
-      std::min(bright.cost_ratio, dark.cost_ratio) < 0.95F) {
+      std::min(bright.cost_ratio, dark.cost_ratio) < 0.2F + max_ratio) {
     out = bright.cost_ratio <= dark.cost_ratio ? bright : dark;
     owner = LineOwner::kBoth;
     return true;
@@ -234,30 +288,48 @@ bool ChooseSide(const StereoLineParams& params, const Match& bright, const Match
   const bool choose_bright = bright.found && (!dark.found || bright.cost_ratio <= dark.cost_ratio);
   out = choose_bright ? bright : dark;
   owner = choose_bright ? LineOwner::kBright : LineOwner::kDark;
-  return out.found && out.cost_ratio < params.max_cost_ratio;
+  return out.found && out.cost_ratio < max_ratio;
+}
+
+// Both sides of a steep line; `bright` is the one that the normal points to.
+void MatchSteep(const StereoLineParams& params, const StereoInput& in, const Segment2& segment, StereoScratch& scratch,
+                Match& bright, Match& dark) {
+  const RowSamples rows = CrossedRows(segment, kMaxStereoRows);
+  if (rows.size() < 4) return;
+  const bool bright_is_right = segment.Normal().x() > 0;
+  FillRowCosts(in, rows, -kStripOverlap, scratch);
+  (bright_is_right ? bright : dark) = SearchDisparity(params, segment, rows, scratch);
+  FillRowCosts(in, rows, kStripOverlap - kStripWidth + 1, scratch);
+  (bright_is_right ? dark : bright) = SearchDisparity(params, segment, rows, scratch);
+}
+
+void MatchFlat(const StereoLineParams& params, const StereoInput& in, const Segment2& segment, StereoScratch& scratch,
+               Match& bright, Match& dark) {
+  const RowSamples columns = FlatSamples(segment);
+  const bool bright_is_below = segment.Normal().y() > 0;
+  FillColumnCosts(in, columns, -kStripOverlap, scratch);
+  (bright_is_below ? bright : dark) = SearchDisparity(params, segment, columns, scratch);
+  FillColumnCosts(in, columns, kStripOverlap - kStripWidth + 1, scratch);
+  (bright_is_below ? dark : bright) = SearchDisparity(params, segment, columns, scratch);
 }
 
 void MatchLine(const StereoLineParams& params, const StereoInput& in, StereoScratch& scratch, Line3& line) {
-  const Segment2& segment = line.segment;
-  const Vector2 delta = segment.Delta();
-  if (std::abs(delta.y()) < params.min_slope * segment.Length()) return;
-  const RowSamples rows = CrossedRows(segment, kMaxStereoRows);
-  if (rows.size() < 4) return;
-  // Columns to the right of the edge belong to the bright side when the normal points right.
-  const bool bright_is_right = segment.Normal().x() > 0;
-  FillCosts(in, rows, -kStripOverlap, scratch);
-  const Match right = SearchDisparity(params, segment, rows, scratch);
-  FillCosts(in, rows, kStripOverlap - kStripWidth + 1, scratch);
-  const Match left = SearchDisparity(params, segment, rows, scratch);
-  Match match;
-  if (!ChooseSide(params, bright_is_right ? right : left, bright_is_right ? left : right, match, line.owner)) return;
-  Refine(params, in, match, line);
+  const bool flat = std::abs(line.segment.Delta().y()) < params.min_slope * line.segment.Length();
+  Match bright, dark, match;
+  (flat ? MatchFlat : MatchSteep)(params, in, line.segment, scratch, bright, dark);
+  const float max_ratio = flat ? params.max_flat_cost_ratio : params.max_cost_ratio;
+  if (!ChooseSide(params, bright, dark, max_ratio, match, line.owner)) return;
+  if (flat) {
+    SetCoarse(params.flat_sigma_px, match, line);
+  } else {
+    Refine(params, in, match, line);
+  }
   if (line.disparity_a_px < 1 || line.disparity_b_px < 1) return;
-  const auto point = [&](const Vector2& p, float d) {
+  const auto point = [&](const Vector2& p, float d) -> Vector3 {
     return in.camera.Triangulate(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(d)).cast<float>();
   };
-  line.a = point(segment.a, line.disparity_a_px);
-  line.b = point(segment.b, line.disparity_b_px);
+  line.a = point(line.segment.a, line.disparity_a_px);
+  line.b = point(line.segment.b, line.disparity_b_px);
   line.has_depth = true;
 }
 

@@ -14,10 +14,12 @@
 namespace wirepose {
 
 struct StereoLineParams {
-  float min_slope = 0.21F;  // |dy| / length: lines within 12 degrees of the epipolar line get no depth of their own
+  float min_slope = 0.21F;  // |dy| / length: lines within 12 degrees of the epipolar line are flat
   float max_disparity_slope = 0.45F;  // change of disparity per pixel of line: steeper surfaces are not matched
   // A match counts when its cost is below this share of the best one elsewhere, or when both sides of the edge agree.
   float max_cost_ratio = 0.75F;
+  float max_flat_cost_ratio = 0.6F;  // flat lines match by their ends and the texture beside them: ask for more
+  float flat_sigma_px = 0.7F;        // of the disparity at an end of a flat line
   float side_agreement_px = 0.8F;
   // Sub-pixel refinement: the same edge in the right image, searched this far around the coarse match.
   float search_px = 2.0F;
