@@ -3,6 +3,8 @@
 #include <exception>
 
 #include "command.h"
+#include "compare_command.h"
+#include "eval_command.h"
 #include "model_command.h"
 #include "sim_command.h"
 #include "watch_command.h"
@@ -10,6 +12,8 @@
 int main(int argc, char** argv) {
   CLI::App app{"Wirepose: model-based 3D object recognition from line features"};
   app.require_subcommand(1);
+  wirepose::cli::AddCompareCommand(app);
+  wirepose::cli::AddEvalCommand(app);
   wirepose::cli::AddModelCommand(app);
   wirepose::cli::AddSimCommand(app);
   wirepose::cli::AddWatchCommand(app);

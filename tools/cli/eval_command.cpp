@@ -1,0 +1,110 @@
+#include "tools/cli/eval_command.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "tools/cli/command.h"
+#include "tools/cli/recognizer_overlay.h"
+#include "tools/evaluation/evaluate.h"
+#include "tools/evaluation/evaluation_json.h"
+#include "tools/evaluation/results_csv.h"
+#include "tools/evaluation/summary.h"
+
+namespace wirepose::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvalArguments {
+  evaluation::EvaluationOptions options;
+  fs::path out;
+  fs::path json;     // empty: none
+  fs::path overlay;  // folder; empty: none
+};
+
+// A long run must not fail at its last step.
+void CheckWritable(const fs::path& file) {
+  std::ofstream out(file, std::ios::app);
+  if (out) return;
+  throw UsageError(file.string() +
+                   ": cannot be written; name a file in an existing folder you may write to");
+}
+
+void DrawFrame(const evaluation::FrameView& view, const EvalArguments& arguments) {
+  overlay::OverlayInput input = LinesOf(view.recognizer);
+  for (const dataset::TrueInstance& truth : view.entry.gt) {
+    const ModelView* model = view.models.Find(static_cast<std::uint32_t>(truth.obj_id));
+    if (model == nullptr) continue;
+    AddObject(view.recognizer, *model, truth.T_camera_model, overlay::PoseKind::kTruth, "", input);
+  }
+  for (const Detection& d : view.result.detections) {
+    const ModelView* model = view.models.Find(d.model_id);
+    if (model == nullptr || static_cast<double>(d.score) < arguments.options.min_score) continue;
+    AddObject(view.recognizer, *model, d.T_camera_model, overlay::PoseKind::kFound,
+              fmt::format("{} {:.2f}", model->name, d.score), input);
+  }
+  input.caption = fmt::format("scene {} image {}", view.entry.scene_id, view.entry.im_id);
+  WriteOverlay(input, arguments.overlay /
+                          fmt::format("{:06d}_{:06d}.png", view.entry.scene_id, view.entry.im_id));
+}
+
+void ShowProgress(const evaluation::FrameView& view) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  const bool last = view.index + 1 == view.count;
+  std::fprintf(stderr, "\rframe %zu of %zu%s", view.index + 1, view.count, last ? "\n" : "");
+}
+
+void WriteJson(const fs::path& file, const evaluation::Evaluation& evaluation) {
+  std::ofstream out(file);
+  out << evaluation::ToJson(evaluation).dump(1) << '\n';
+  out.close();
+  if (!out) throw WorkFailed(file.string() + ": cannot be written; check the free space");
+}
+
+void RunEval(const EvalArguments& arguments) {
+  CheckWritable(arguments.out);
+  if (!arguments.json.empty()) CheckWritable(arguments.json);
+  const auto observer = [&](const evaluation::FrameView& view) -> Result<void, std::string> {
+    ShowProgress(view);
+    if (!arguments.overlay.empty()) DrawFrame(view, arguments);
+    return {};
+  };
+  const auto evaluation = evaluation::Evaluate(arguments.options, observer);
+  if (!evaluation) throw WorkFailed(evaluation.error());
+  const auto written = evaluation::WriteResults(arguments.out, evaluation->estimates);
+  if (!written) throw WorkFailed(written.error());
+  if (!arguments.json.empty()) WriteJson(arguments.json, *evaluation);
+  std::fputs(evaluation::Summarize(*evaluation).c_str(), stdout);
+}
+
+}  // namespace
+
+void AddEvalCommand(CLI::App& app) {
+  const auto arguments = std::make_shared<EvalArguments>();
+  CLI::App* eval =
+      app.add_subcommand("eval", "Run the recognizer over a data set and measure what it finds");
+  eval->add_option("dataset", arguments->options.dataset,
+                   "Folder with calib.yaml, models/ and test/")
+      ->required();
+  eval->add_option("--models", arguments->options.models,
+                   "A .wpm file or a folder of them; without it DATASET/models/*.ply are compiled");
+  eval->add_option("--objects", arguments->options.object_ids,
+                   "Search for these model ids only, as 1,3")
+      ->delimiter(',');
+  eval->add_option("--out", arguments->out, "Detections, as BOP results (CSV)")->required();
+  eval->add_option("--json", arguments->json, "All measures, stage times and list use (JSON)");
+  eval->add_option("--overlay", arguments->overlay, "Folder for a picture of every frame");
+  eval->add_option("--limit", arguments->options.frame_limit, "Stop after so many frames (0: all)")
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? std::string("must not be negative") : std::string();
+      });
+  eval->add_option("--min-score", arguments->options.min_score, "Drop detections below this score");
+  eval->callback([arguments] { RunEval(*arguments); });
+}
+
+}  // namespace wirepose::cli
