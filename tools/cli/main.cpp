@@ -3,11 +3,13 @@
 #include <exception>
 
 #include "command.h"
+#include "model_command.h"
 #include "sim_command.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"Wirepose: model-based 3D object recognition from line features"};
   app.require_subcommand(1);
+  wirepose::cli::AddModelCommand(app);
   wirepose::cli::AddSimCommand(app);
   try {
     app.parse(argc, argv);

@@ -3,6 +3,7 @@
 #define WIREPOSE_TOOLS_MODEL_COMPILER_MESH_H_
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <vector>
 

@@ -1,0 +1,20 @@
+// Mesh files of every format that assimp reads.
+#ifndef WIREPOSE_TOOLS_MODEL_COMPILER_MESH_READER_H_
+#define WIREPOSE_TOOLS_MODEL_COMPILER_MESH_READER_H_
+
+#include <filesystem>
+#include <string>
+
+#include "base/result.h"
+#include "tools/model_compiler/mesh.h"
+
+namespace wirepose::tools {
+
+// All triangles of the file (polygons are split, scene nodes applied), coordinates times
+// `metres_per_unit`. As written: vertices may be repeated, triangles degenerate or wound either
+// way; see mesh_cleaning.h. The error names file, problem and remedy.
+Result<Mesh, std::string> ReadMesh(const std::filesystem::path& file, double metres_per_unit);
+
+}  // namespace wirepose::tools
+
+#endif  // WIREPOSE_TOOLS_MODEL_COMPILER_MESH_READER_H_
