@@ -131,7 +131,7 @@ TEST(Projection, SilhouetteAgreesWithOpenCv) {
     const Case c = AnyCase(random);
     const Camera camera = test::LeftOf(c.calibration);
     const Renderer renderer(test::GlowingBox(c.size.cast<float>(), c.T_camera_object));
-    const Region seen = RegionOf(renderer.Render(camera, {}));
+    const Region seen = RegionOf(renderer.Render(camera, {.samples_per_side = 6}));
     const Region expected = RegionOf(Outline(c.size, c.T_camera_object, c.calibration.left));
     EXPECT_LT((seen.centroid - expected.centroid).norm(), 0.01) << "case " << i;
     EXPECT_NEAR(seen.area / std::abs(expected.area), 1, 1e-3) << "case " << i;
