@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cmath>
+#include <fstream>
+#include <sstream>
 #include <system_error>
+
+#include "tools/model_compiler/ply_reader.h"
 
 namespace wirepose::tools {
 namespace {
@@ -33,6 +36,36 @@ void Append(const aiMesh& part, double scale, Mesh& mesh) {
   }
 }
 
+Result<Mesh, std::string> ReadPly(const std::filesystem::path& file, double metres_per_unit) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return unexpected(std::string("cannot be opened; check the permissions"));
+  std::ostringstream text;
+  text << in.rdbuf();
+  return ParsePly(text.str(), metres_per_unit);
+}
+
+Result<Mesh, std::string> ReadWithAssimp(const std::filesystem::path& file,
+                                         double metres_per_unit) {
+  Assimp::Importer importer;
+  const aiScene* scene =
+      importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
+  if (scene == nullptr) {
+    return unexpected("cannot be read as a mesh (" + OneLine(importer.GetErrorString()) +
+                      "); export it as PLY, OBJ or STL");
+  }
+  Mesh mesh;
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i)
+    Append(*scene->mMeshes[i], metres_per_unit, mesh);
+  return mesh;
+}
+
+bool IsPly(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return extension == ".ply";
+}
+
 }  // namespace
 
 Result<Mesh, std::string> ReadMesh(const std::filesystem::path& file, double metres_per_unit) {
@@ -43,18 +76,9 @@ Result<Mesh, std::string> ReadMesh(const std::filesystem::path& file, double met
   }
   if (std::filesystem::file_size(file, error) == 0)
     return unexpected(name + ": the file is empty; export the mesh again");
-
-  Assimp::Importer importer;
-  const aiScene* scene =
-      importer.ReadFile(name, aiProcess_Triangulate | aiProcess_PreTransformVertices);
-  if (scene == nullptr) {
-    return unexpected(name + ": cannot be read as a mesh (" + OneLine(importer.GetErrorString()) +
-                      "); export it as PLY, OBJ or STL");
-  }
-  Mesh mesh;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i)
-    Append(*scene->mMeshes[i], metres_per_unit, mesh);
-  if (mesh.triangles.empty())
+  auto mesh = IsPly(file) ? ReadPly(file, metres_per_unit) : ReadWithAssimp(file, metres_per_unit);
+  if (!mesh) return unexpected(name + ": " + mesh.error());
+  if (mesh->triangles.empty())
     return unexpected(name + ": has no faces; export the object as a surface mesh");
   return mesh;
 }

@@ -1,4 +1,4 @@
-// Mesh files of every format that assimp reads.
+// Mesh files: PLY by our own reader, every other format by assimp.
 #ifndef WIREPOSE_TOOLS_MODEL_COMPILER_MESH_READER_H_
 #define WIREPOSE_TOOLS_MODEL_COMPILER_MESH_READER_H_
 
