@@ -1,11 +1,9 @@
 #include "sim/mesh.h"
 
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
 #include <cmath>
 #include <numbers>
+
+#include "tools/model_compiler/mesh_reader.h"
 
 namespace wirepose::sim {
 
@@ -22,35 +20,19 @@ Vector3 Mesh::Max() const {
 }
 
 Result<Mesh, std::string> LoadMesh(const std::filesystem::path& path, double unit_m) {
-  Assimp::Importer importer;
-  const aiScene* scene =
-      importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
-                                           aiProcess_PreTransformVertices);
-  if (scene == nullptr) {
-    return unexpected(path.string() + ": mesh cannot be read: " + importer.GetErrorString() +
-                      "; give a PLY, OBJ or STL file");
-  }
+  const Result<tools::Mesh, std::string> file = tools::ReadMesh(path, unit_m);
+  if (!file) return unexpected(file.error());
   Mesh mesh;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    const aiMesh& part = *scene->mMeshes[m];
-    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (unsigned i = 0; i < part.mNumVertices; ++i) {
-      const aiVector3D& v = part.mVertices[i];
-      mesh.vertices.push_back(static_cast<float>(unit_m) * Vector3(v.x, v.y, v.z));
-      if (!mesh.vertices.back().allFinite()) {
-        return unexpected(path.string() + ": vertex " + std::to_string(i) +
-                          " is not finite; repair the mesh");
-      }
-    }
-    for (unsigned i = 0; i < part.mNumFaces; ++i) {
-      const aiFace& face = part.mFaces[i];
-      if (face.mNumIndices != 3) continue;  // points and lines cannot be seen
-      mesh.triangles.push_back(
-          {base + face.mIndices[0], base + face.mIndices[1], base + face.mIndices[2]});
+  for (const Vector3d& vertex : file->vertices) {
+    mesh.vertices.push_back(vertex.cast<float>());
+    if (!mesh.vertices.back().allFinite()) {
+      return unexpected(path.string() + ": vertex " + std::to_string(mesh.vertices.size() - 1) +
+                        " is not finite; repair the mesh");
     }
   }
-  if (mesh.triangles.empty()) {
-    return unexpected(path.string() + ": mesh has no faces; export it with faces");
+  for (const std::array<int, 3>& t : file->triangles) {
+    mesh.triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
+                              static_cast<std::uint32_t>(t[2])});
   }
   return mesh;
 }
