@@ -49,12 +49,16 @@ RecognizerError Recognizer::AddModel(const ModelView& model) {
     if (m.view.id == model.id) return RecognizerError::kDuplicateModel;
   }
   if (models_.full()) return RecognizerError::kTooManyModels;
+  views_.push_back(model);
   models_.resize(models_.size() + 1);
   PrepareModel(model, models_.back());
   return RecognizerError::kOk;
 }
 
-void Recognizer::ClearModels() { models_.clear(); }
+void Recognizer::ClearModels() {
+  views_.clear();
+  models_.clear();
+}
 
 std::span<const SetMember> Recognizer::line_set(std::size_t i) const {
   const auto& members = candidates()[accepted_[i]].members;
@@ -163,7 +167,7 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
 void Recognizer::Report(RecognitionResult& result) {
   const auto& candidates = candidates_.Sorted();
   std::uint32_t dropped = 0;
-  SelectDetections(params_.select, camera(), left_edges_, models(), {candidates.begin(), candidates.end()},
+  SelectDetections(params_.select, camera(), left_edges_, {models_.begin(), models_.end()}, {candidates.begin(), candidates.end()},
                    verify_scratch_, claims_, accepted_, dropped);
   // Results are given in the raw left camera's frame.
   const Pose T_raw_rectified = T_rectified_raw().Inverse();

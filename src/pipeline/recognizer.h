@@ -89,7 +89,7 @@ class Recognizer {
   // Adds an object to search for. The bytes behind the view must stay unchanged until ClearModels.
   RecognizerError AddModel(const ModelView& model);
   void ClearModels();
-  [[nodiscard]] std::span<const PreparedModel> models() const { return {models_.begin(), models_.end()}; }
+  [[nodiscard]] std::span<const ModelView> models() const { return {views_.begin(), views_.end()}; }
 
   // Recognizes every added model in a raw pair of the calibrated size. `observer` may be null. Bounded time: every loop
   // has a compile-time bound; a search that stops at its bound sets `budget_hit`.
@@ -105,6 +105,7 @@ class Recognizer {
   [[nodiscard]] std::span<const Segment2> left_segments() const { return {left_segments_.items.begin(), left_segments_.items.end()}; }
   [[nodiscard]] std::span<const Segment2> right_segments() const { return {right_segments_.items.begin(), right_segments_.items.end()}; }
   [[nodiscard]] std::span<const Line3> lines() const { return {lines_.begin(), lines_.end()}; }
+  [[nodiscard]] std::size_t detection_count() const { return accepted_.size(); }
   // The corresponding line set behind detection i: which image line lies on which model edge.
   [[nodiscard]] std::span<const SetMember> line_set(std::size_t i) const;
   // Verified candidates of all models, by falling score: what was nearly reported, and why not.
@@ -123,7 +124,8 @@ class Recognizer {
   RecognizerParams params_;
   bool configured_ = false;
   Rectification rectification_;
-  FixedVector<PreparedModel, kMaxModels> models_;
+  FixedVector<ModelView, kMaxModels> views_;
+  FixedVector<PreparedModel, kMaxModels> models_;  // of the same models, in the same order
 
   // Per frame, in the order of the flow.
   ImagePlane left_rectified_, right_rectified_;

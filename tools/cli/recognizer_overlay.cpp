@@ -12,6 +12,9 @@ overlay::OverlayInput LinesOf(const Recognizer& recognizer) {
   input.camera = recognizer.camera();
   input.segments = recognizer.left_segments();
   input.lines = recognizer.lines();
+  for (std::uint32_t i = 0; i < recognizer.detection_count(); ++i) {
+    for (const SetMember& member : recognizer.line_set(i)) input.line_sets.push_back({i, member.line});
+  }
   return input;
 }
 
