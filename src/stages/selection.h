@@ -12,12 +12,12 @@ namespace wirepose {
 // Score = logistic function of the evidence. The weights are one set for all models and data; they were fitted on
 // simulated kitchens (docs/decisions/0005-score.md), never on recorded test data.
 struct ScoreParams {
-  float bias = -10.0F;
-  float edge_density = 0.28F;  // per log-likelihood unit and 100 px of visible edge
-  float log_length = 1.2F;     // per natural logarithm of visible edge length over 300 px
-  float faces = 0.33F;         // per unit of face evidence
-  float silhouette = 0.04F;    // per unit of silhouette evidence
-  float rms = -0.5F;           // per px of residual after refinement
+  float bias = -7.561F;
+  float edge_density = 0.275F;  // per log-likelihood unit and 100 px of visible edge
+  float log_length = 0.819F;     // per natural logarithm of visible edge length over 300 px
+  float faces = 0.228F;         // per unit of face evidence
+  float silhouette = -0.018F;    // per unit of silhouette evidence
+  float rms = -0.865F;           // per px of residual after refinement
 };
 
 struct SelectParams {
