@@ -8,7 +8,7 @@ namespace wirepose {
 namespace {
 
 // Poses that are promoted; the rest of the hypotheses is too weak to matter.
-constexpr std::size_t kMaxPromoted = 3 * kMaxCandidates;
+constexpr std::size_t kMaxPromoted = 2 * kMaxCandidates;
 
 class Promoter {
  public:
