@@ -36,22 +36,33 @@ bool PoseScorer::Project(const PreparedEdge& edge, const Matrix3& R, const Vecto
 }
 
 bool PoseScorer::Score(const Matrix3& R, const Vector3& t, const EdgeBits& visible, float& score) const {
+  struct Sampled {
+    Projected p;
+    int n;
+  };
+  FixedVector<Sampled, kMaxModelEdges> sampled;
   Support left, right;
-  int total = 0, edges = 0;
+  int total = 0;
   for (std::size_t e = 0; e < model_.edges.size(); ++e) {
     Projected p;
     if (!HasEdge(visible, e) || !Project(model_.edges[e], R, t, p)) continue;
     const int n = std::clamp(static_cast<int>((p.b - p.a).norm() / params_.sample_step_px), 1, 16);
     total += n;
     AddSupport(scene_.left, left_gain_, p.a, p.b, n, left);
-    AddSupport(scene_.right, right_gain_, {p.a.x() - p.disparity_a, p.a.y()}, {p.b.x() - p.disparity_b, p.b.y()}, n, right);
-    if (++edges == params_.first_edges &&
+    sampled.push_back({p, n});
+    if (static_cast<int>(sampled.size()) == params_.first_edges &&
         static_cast<float>(left.hits) < params_.min_first_support * static_cast<float>(left.inside)) {
       return false;
     }
   }
+  // The right image is asked only when the left one speaks for the pose.
+  if (left.sum <= 0 || static_cast<float>(left.inside) < params_.min_inside * static_cast<float>(total)) return false;
+  for (const Sampled& s : sampled) {
+    const Projected& p = s.p;
+    AddSupport(scene_.right, right_gain_, {p.a.x() - p.disparity_a, p.a.y()}, {p.b.x() - p.disparity_b, p.b.y()}, s.n, right);
+  }
   score = left.sum + right.sum;
-  return static_cast<float>(left.inside) >= params_.min_inside * static_cast<float>(total);
+  return true;
 }
 
 void PoseScorer::AddSupport(const EdgeMap& map, const LogGain& gain, const Vector2& a, const Vector2& b, int n, Support& out) {

@@ -39,7 +39,7 @@ class PoseScorer {
   bool Project(const PreparedEdge& edge, const Matrix3& R, const Vector3& t, Projected& out) const;
 
   // Log-likelihood ratio of the visible edges' samples in both images, object at (R, t) against background. False when
-  // too little of the object lies in the image or its longest edges already fail. `visible` are the edges to score.
+  // too little of the object lies in the image, its longest edges already fail or the left image speaks against it. `visible` are the edges to score.
   bool Score(const Matrix3& R, const Vector3& t, const EdgeBits& visible, float& score) const;
 
  private:

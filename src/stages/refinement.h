@@ -8,7 +8,7 @@
 namespace wirepose {
 
 struct RefineParams {
-  int iterations = 7;
+  int iterations = 6;
   SampleParams samples{.step_px = 8};
   float first_range_px = 8;    // 1D search along the edge normal; shrinks to last_range_px
   float last_range_px = 3;
