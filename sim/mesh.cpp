@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/model_compiler/mesh_reader.h"
+#include "mesh/mesh_reader.h"
 
 namespace wirepose::sim {
 
@@ -20,7 +20,7 @@ Vector3 Mesh::Max() const {
 }
 
 Result<Mesh, std::string> LoadMesh(const std::filesystem::path& path, double unit_m) {
-  const Result<tools::Mesh, std::string> file = tools::ReadMesh(path, unit_m);
+  const Result<mesh::Mesh, std::string> file = mesh::ReadMesh(path, unit_m);
   if (!file) return unexpected(file.error());
   Mesh mesh;
   for (const Vector3d& vertex : file->vertices) {

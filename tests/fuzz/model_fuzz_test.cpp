@@ -7,7 +7,8 @@
 #include <random>
 
 #include "tests/fuzz/model_fuzz_target.h"
-#include "tests/tools/model_test_meshes.h"
+#include "tests/mesh/test_meshes.h"
+#include "tests/tools/model_test_options.h"
 
 namespace wirepose {
 namespace {

@@ -10,7 +10,8 @@
 #include <string>
 
 #include "tests/model/model_consistency.h"
-#include "tests/tools/model_test_meshes.h"
+#include "tests/mesh/test_meshes.h"
+#include "tests/tools/model_test_options.h"
 #include "tools/model_compiler/model_writer.h"
 
 namespace wirepose {

@@ -10,7 +10,8 @@
 #include <sstream>
 
 #include "tests/model/model_consistency.h"
-#include "tests/tools/model_test_meshes.h"
+#include "tests/mesh/test_meshes.h"
+#include "tests/tools/model_test_options.h"
 #include "tools/model_compiler/models_info.h"
 
 namespace wirepose {
@@ -21,7 +22,7 @@ using ::testing::HasSubstr;
 using testing::TestOptions;
 using tools::CompiledModel;
 using tools::CompileModel;
-using tools::Mesh;
+using mesh::Mesh;
 
 CompiledModel Compile(const Mesh& mesh) {
   auto model = CompileModel(mesh, TestOptions());

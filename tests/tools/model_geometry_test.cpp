@@ -4,7 +4,8 @@
 #include <limits>
 #include <map>
 
-#include "tests/tools/model_test_meshes.h"
+#include "tests/mesh/test_meshes.h"
+#include "tests/tools/model_test_options.h"
 #include "tools/model_compiler/aspects.h"
 
 namespace wirepose {
@@ -12,7 +13,7 @@ namespace {
 
 using testing::BoxMesh;
 using tools::CompiledModel;
-using tools::Mesh;
+using mesh::Mesh;
 
 CompiledModel Compile(const Mesh& mesh) {
   return tools::CompileModel(mesh, testing::TestOptions()).value();

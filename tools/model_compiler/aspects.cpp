@@ -23,7 +23,7 @@ struct RtcRelease {
 // The mesh in Embree. One thread, robust mode: the same bits on every run.
 class Occluder {
  public:
-  explicit Occluder(const Mesh& mesh)
+  explicit Occluder(const mesh::Mesh& mesh)
       : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_.get())) {
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -108,12 +108,12 @@ std::vector<Vector3d> SphereDirections(int subdivisions) {
   return points;
 }
 
-Vector3d EdgeSample(const Mesh& mesh, const Crease& crease, int k) {
+Vector3d EdgeSample(const mesh::Mesh& mesh, const Crease& crease, int k) {
   const double s = (k + 0.5) / kSamplesPerEdge;
   return (1 - s) * mesh.vertices[crease.vertex[0]] + s * mesh.vertices[crease.vertex[1]];
 }
 
-std::vector<Aspect> TraceAspects(const Mesh& mesh, const std::vector<Face>& faces,
+std::vector<Aspect> TraceAspects(const mesh::Mesh& mesh, const std::vector<Face>& faces,
                                  const std::vector<Crease>& creases, double diameter,
                                  double tolerance) {
   Vector3d low = mesh.vertices.at(0), high = low;

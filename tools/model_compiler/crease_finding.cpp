@@ -24,7 +24,7 @@ struct Piece {
 using FacePair = std::pair<int, int>;  // (smaller, larger), or (face, kOpen)
 
 // Is the triangle `t`'s third vertex below the plane of the face that it meets at `edge`?
-bool IsConvex(const Mesh& mesh, const EdgeKey& edge, int t, const Vector3d& other_normal) {
+bool IsConvex(const mesh::Mesh& mesh, const EdgeKey& edge, int t, const Vector3d& other_normal) {
   for (const int v : mesh.triangles[t]) {
     if (v == edge.first || v == edge.second) continue;
     return other_normal.dot(mesh.vertices[v] - mesh.vertices[edge.first]) < 0;
@@ -33,7 +33,7 @@ bool IsConvex(const Mesh& mesh, const EdgeKey& edge, int t, const Vector3d& othe
 }
 
 // The pieces of all creases, grouped by the faces they part.
-std::map<FacePair, std::vector<Piece>> CollectPieces(const Mesh& mesh,
+std::map<FacePair, std::vector<Piece>> CollectPieces(const mesh::Mesh& mesh,
                                                      const std::vector<int>& face_of_triangle,
                                                      double crease_angle_rad) {
   std::map<FacePair, std::vector<Piece>> pieces;
@@ -70,7 +70,7 @@ struct Run {
   bool convex;
 };
 
-bool IsOnLine(const Mesh& mesh, const Piece& piece, const Vector3d& origin,
+bool IsOnLine(const mesh::Mesh& mesh, const Piece& piece, const Vector3d& origin,
               const Vector3d& direction, double tolerance) {
   for (const int v : {piece.edge.first, piece.edge.second}) {
     const Vector3d offset = mesh.vertices[v] - origin;
@@ -79,7 +79,7 @@ bool IsOnLine(const Mesh& mesh, const Piece& piece, const Vector3d& origin,
   return true;
 }
 
-Run MakeRun(const Mesh& mesh, const Piece& piece, const Vector3d& origin,
+Run MakeRun(const mesh::Mesh& mesh, const Piece& piece, const Vector3d& origin,
             const Vector3d& direction) {
   const auto [a, b] = piece.edge;
   const double at_a = (mesh.vertices[a] - origin).dot(direction);
@@ -108,7 +108,7 @@ std::vector<Run> JoinTouching(std::vector<Run> runs, double tolerance) {
 
 // The straight runs of one pair of faces; it may have several lines (borders, faces that are not
 // quite planar).
-std::vector<Run> JoinPieces(const Mesh& mesh, std::vector<Piece> pieces, double tolerance) {
+std::vector<Run> JoinPieces(const mesh::Mesh& mesh, std::vector<Piece> pieces, double tolerance) {
   const auto length = [&](const Piece& p) {
     return (mesh.vertices[p.edge.second] - mesh.vertices[p.edge.first]).norm();
   };
@@ -136,7 +136,7 @@ std::vector<Run> JoinPieces(const Mesh& mesh, std::vector<Piece> pieces, double 
 
 }  // namespace
 
-std::vector<Crease> FindCreases(const Mesh& mesh, const std::vector<Face>& faces,
+std::vector<Crease> FindCreases(const mesh::Mesh& mesh, const std::vector<Face>& faces,
                                 const std::vector<int>& face_of_triangle, double crease_angle_rad,
                                 double tolerance) {
   std::vector<Crease> creases;

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 // Compared with the seed's plane, not with the neighbour's: a finely tessellated sphere must not
 // become one face.
-bool LiesIn(const Mesh& mesh, int t, const Vector3d& normal, const Vector3d& point,
+bool LiesIn(const mesh::Mesh& mesh, int t, const Vector3d& normal, const Vector3d& point,
             const FaceTolerance& tolerance) {
   const Vector3d n = mesh.AreaNormal(mesh.triangles[t]).normalized();
   if (n.dot(normal) < std::cos(tolerance.angle_rad)) return false;
@@ -21,7 +21,7 @@ bool LiesIn(const Mesh& mesh, int t, const Vector3d& normal, const Vector3d& poi
   });
 }
 
-Face Summarize(const Mesh& mesh, std::vector<int> triangles) {
+Face Summarize(const mesh::Mesh& mesh, std::vector<int> triangles) {
   std::sort(triangles.begin(), triangles.end());
   Face face{Vector3d::Zero(), Vector3d::Zero(), 0, std::move(triangles)};
   for (const int t : face.triangles) {
@@ -39,7 +39,7 @@ Face Summarize(const Mesh& mesh, std::vector<int> triangles) {
 
 }  // namespace
 
-std::vector<Face> MergeCoplanar(const Mesh& mesh, const FaceTolerance& tolerance,
+std::vector<Face> MergeCoplanar(const mesh::Mesh& mesh, const FaceTolerance& tolerance,
                                 std::vector<int>& face_of_triangle) {
   const EdgeMap edges = MakeEdgeMap(mesh);
   std::vector<int> order(mesh.triangles.size());

@@ -14,7 +14,7 @@ struct LineSegment {
   [[nodiscard]] Vector3d Direction() const { return (b - a).normalized(); }
 };
 
-LineSegment SegmentOf(const Mesh& mesh, const Crease& c) {
+LineSegment SegmentOf(const mesh::Mesh& mesh, const Crease& c) {
   return {mesh.vertices[c.vertex[0]], mesh.vertices[c.vertex[1]]};
 }
 
@@ -61,7 +61,7 @@ std::vector<int> BaseLines(const std::vector<std::vector<bool>>& co_visible) {
 
 }  // namespace
 
-ModelSetMember ParameterVector(const Mesh& mesh, const std::vector<Crease>& creases, int base,
+ModelSetMember ParameterVector(const mesh::Mesh& mesh, const std::vector<Crease>& creases, int base,
                                int member, double parallel_angle_rad) {
   const LineSegment s = SegmentOf(mesh, creases[base]), o = SegmentOf(mesh, creases[member]);
   const double angle = LineAngle(s, o);
@@ -77,7 +77,7 @@ ModelSetMember ParameterVector(const Mesh& mesh, const std::vector<Crease>& crea
           static_cast<float>(farthest)};
 }
 
-LineSets MakeLineSets(const Mesh& mesh, const std::vector<Crease>& creases,
+LineSets MakeLineSets(const mesh::Mesh& mesh, const std::vector<Crease>& creases,
                       const std::vector<std::vector<bool>>& co_visible, double parallel_angle_rad) {
   LineSets result;
   const std::vector<int> bases = BaseLines(co_visible);

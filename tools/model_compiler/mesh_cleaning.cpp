@@ -56,7 +56,7 @@ class PointGrid {
   std::map<Cell, std::vector<int>> cells_;
 };
 
-bool IsDegenerate(const Mesh& mesh, const Triangle& t, double tolerance) {
+bool IsDegenerate(const mesh::Mesh& mesh, const Triangle& t, double tolerance) {
   if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
   double longest = 0;
   for (int k = 0; k < 3; ++k)
@@ -70,7 +70,7 @@ Triangle Canonical(const Triangle& t) {
   return {t[first], t[(first + 1) % 3], t[(first + 2) % 3]};
 }
 
-void DropUnusedVertices(Mesh& mesh) {
+void DropUnusedVertices(mesh::Mesh& mesh) {
   std::vector<int> new_index(mesh.vertices.size(), -1);
   for (const Triangle& t : mesh.triangles) {
     for (const int v : t) new_index[v] = 0;
@@ -95,7 +95,7 @@ bool RunsAlong(const Triangle& t, int a, int b) {
   return false;
 }
 
-double SignedVolume(const Mesh& mesh, const std::vector<int>& component, const Vector3d& origin) {
+double SignedVolume(const mesh::Mesh& mesh, const std::vector<int>& component, const Vector3d& origin) {
   double volume = 0;
   for (const int t : component) {
     const Triangle& v = mesh.triangles[t];
@@ -106,7 +106,7 @@ double SignedVolume(const Mesh& mesh, const std::vector<int>& component, const V
 
 // Flood-fills from `seed` over edges with two triangles; `turn[t]` says whether t must be turned to
 // agree with the seed.
-std::vector<int> CollectComponent(const Mesh& mesh, const EdgeMap& edges, int seed,
+std::vector<int> CollectComponent(const mesh::Mesh& mesh, const EdgeMap& edges, int seed,
                                   std::vector<int>& turn) {
   std::vector<int> component{seed};
   turn[seed] = 0;
@@ -127,7 +127,7 @@ std::vector<int> CollectComponent(const Mesh& mesh, const EdgeMap& edges, int se
 }
 
 std::size_t TurnTriangles(const std::vector<int>& component, const std::vector<int>& turn,
-                          Mesh& mesh) {
+                          mesh::Mesh& mesh) {
   std::size_t turned = 0;
   for (const int t : component) {
     if (turn[t] == 0) continue;
@@ -138,7 +138,7 @@ std::size_t TurnTriangles(const std::vector<int>& component, const std::vector<i
 }
 
 // The vertex that lies inside the segment from a to b, nearest to a; -1 if none.
-int VertexInside(const Mesh& mesh, const std::set<int>& candidates, int a, int b,
+int VertexInside(const mesh::Mesh& mesh, const std::set<int>& candidates, int a, int b,
                  double tolerance) {
   const Vector3d direction = mesh.vertices[b] - mesh.vertices[a];
   const double length = direction.norm();
@@ -157,7 +157,7 @@ int VertexInside(const Mesh& mesh, const std::set<int>& candidates, int a, int b
 
 }  // namespace
 
-double Diameter(const Mesh& mesh) {
+double Diameter(const mesh::Mesh& mesh) {
   double squared = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     for (std::size_t j = i + 1; j < mesh.vertices.size(); ++j) {
@@ -167,7 +167,7 @@ double Diameter(const Mesh& mesh) {
   return std::sqrt(squared);
 }
 
-double BoxDiagonal(const Mesh& mesh) {
+double BoxDiagonal(const mesh::Mesh& mesh) {
   if (mesh.vertices.empty()) return 0;
   Vector3d low = mesh.vertices[0], high = low;
   for (const Vector3d& v : mesh.vertices) {
@@ -177,7 +177,7 @@ double BoxDiagonal(const Mesh& mesh) {
   return (high - low).norm();
 }
 
-std::size_t Weld(double tolerance, Mesh& mesh) {
+std::size_t Weld(double tolerance, mesh::Mesh& mesh) {
   // Sorted first, so that the representative of a cluster does not depend on the file's order.
   std::vector<int> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0);
@@ -207,7 +207,7 @@ std::size_t Weld(double tolerance, Mesh& mesh) {
   return before - mesh.triangles.size();
 }
 
-std::size_t SplitAtTJunctions(double tolerance, Mesh& mesh) {
+std::size_t SplitAtTJunctions(double tolerance, mesh::Mesh& mesh) {
   std::size_t splits = 0;
   for (bool changed = true; changed;) {
     changed = false;
@@ -237,7 +237,7 @@ std::size_t SplitAtTJunctions(double tolerance, Mesh& mesh) {
   return splits;
 }
 
-std::size_t OrientOutward(Mesh& mesh) {
+std::size_t OrientOutward(mesh::Mesh& mesh) {
   const EdgeMap edges = MakeEdgeMap(mesh);
   std::vector<int> turn(mesh.triangles.size(), -1);
   std::size_t turned = 0;

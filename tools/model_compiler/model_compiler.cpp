@@ -11,7 +11,7 @@
 #include "tools/model_compiler/line_geometry.h"
 #include "tools/model_compiler/line_sets.h"
 #include "tools/model_compiler/mesh_cleaning.h"
-#include "tools/model_compiler/mesh_reader.h"
+#include "mesh/mesh_reader.h"
 #include "tools/model_compiler/model_writer.h"
 #include "tools/model_compiler/symmetry.h"
 
@@ -36,7 +36,7 @@ constexpr double kSmallestPlausible_m = 0.005, kLargestPlausible_m = 10;
 using Notes = std::vector<std::string>;
 
 struct Wireframe {
-  Mesh mesh;
+  mesh::Mesh mesh;
   double diameter = 0;
   std::vector<Face> faces;
   std::vector<int> face_of_triangle;
@@ -238,7 +238,7 @@ Result<std::vector<std::byte>, std::string> ReadBytes(const std::filesystem::pat
 
 }  // namespace
 
-Result<CompiledModel, std::string> CompileModel(const Mesh& mesh, const CompileOptions& options) {
+Result<CompiledModel, std::string> CompileModel(const mesh::Mesh& mesh, const CompileOptions& options) {
   if (const auto ok = CheckName(options.name); !ok) return unexpected(ok.error());
   CompiledModel model;
   Wireframe w;
@@ -280,7 +280,7 @@ Result<CompiledModel, std::string> CompileModel(const Mesh& mesh, const CompileO
 
 Result<CompiledModel, std::string> CompileModel(const std::filesystem::path& mesh_file,
                                                 const CompileOptions& options) {
-  const auto mesh = ReadMesh(mesh_file, options.unit == MeshUnit::kMetre ? 1.0 : 1e-3);
+  const auto mesh = mesh::ReadMesh(mesh_file, options.unit == MeshUnit::kMetre ? 1.0 : 1e-3);
   if (!mesh) return unexpected(mesh.error());
   CompileOptions named = options;
   if (named.name.empty()) named.name = mesh_file.stem().string();

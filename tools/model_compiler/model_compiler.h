@@ -10,7 +10,7 @@
 
 #include "base/result.h"
 #include "model/model_view.h"
-#include "tools/model_compiler/mesh.h"
+#include "mesh/mesh.h"
 
 namespace wirepose::tools {
 
@@ -45,7 +45,7 @@ Result<CompiledModel, std::string> CompileModel(const std::filesystem::path& mes
 
 // As above for a mesh in memory, in metres. `options.name` must be given. Errors do not name a
 // file.
-Result<CompiledModel, std::string> CompileModel(const Mesh& mesh, const CompileOptions& options);
+Result<CompiledModel, std::string> CompileModel(const mesh::Mesh& mesh, const CompileOptions& options);
 
 // Reads a .wpm file whole, checked by ParseModel. The error names file, problem and remedy.
 Result<CompiledModel, std::string> ReadModelFile(const std::filesystem::path& file);

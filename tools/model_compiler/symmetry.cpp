@@ -22,7 +22,7 @@ struct Shape {
   std::vector<Face> faces;
 };
 
-Shape MakeShape(const Mesh& mesh, const std::vector<Face>& faces,
+Shape MakeShape(const mesh::Mesh& mesh, const std::vector<Face>& faces,
                 const std::vector<Crease>& creases) {
   Shape shape{Vector3d::Zero(), {}, faces};
   double area = 0;
@@ -171,7 +171,7 @@ std::set<int> LargestSubgroup(const std::vector<Matrix3d>& group, std::size_t li
 
 }  // namespace
 
-Symmetries FindSymmetries(const Mesh& mesh, const std::vector<Face>& faces,
+Symmetries FindSymmetries(const mesh::Mesh& mesh, const std::vector<Face>& faces,
                           const std::vector<Crease>& creases, double tolerance,
                           std::size_t capacity) {
   const Shape shape = MakeShape(mesh, faces, creases);

@@ -1,17 +1,16 @@
 // Small meshes whose wireframes are known by heart. Metres.
-#ifndef WIREPOSE_TESTS_TOOLS_MODEL_TEST_MESHES_H_
-#define WIREPOSE_TESTS_TOOLS_MODEL_TEST_MESHES_H_
+#ifndef WIREPOSE_TESTS_MESH_TEST_MESHES_H_
+#define WIREPOSE_TESTS_MESH_TEST_MESHES_H_
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-#include "tools/model_compiler/mesh.h"
-#include "tools/model_compiler/model_compiler.h"
+#include "mesh/mesh.h"
 
 namespace wirepose::testing {
 
-using tools::Mesh;
+using mesh::Mesh;
 
 // Twelve outward triangles over eight vertices, centred at `centre`.
 inline Mesh BoxMesh(double x, double y, double z,
@@ -90,13 +89,6 @@ inline Mesh TwoPartMesh() {
   return mesh;
 }
 
-inline tools::CompileOptions TestOptions(std::uint32_t id = 7) {
-  tools::CompileOptions options;
-  options.id = id;
-  options.name = "test object";
-  return options;
-}
-
 }  // namespace wirepose::testing
 
-#endif  // WIREPOSE_TESTS_TOOLS_MODEL_TEST_MESHES_H_
+#endif  // WIREPOSE_TESTS_MESH_TEST_MESHES_H_

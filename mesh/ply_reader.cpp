@@ -1,4 +1,4 @@
-#include "tools/model_compiler/ply_reader.h"
+#include "mesh/ply_reader.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,9 +9,9 @@
 #include <sstream>
 #include <vector>
 
-#include "tools/model_compiler/polygon.h"
+#include "mesh/polygon.h"
 
-namespace wirepose::tools {
+namespace wirepose::mesh {
 namespace {
 
 constexpr std::size_t kMaxPolygon = 1000;  // corners; ear clipping is cubic
@@ -252,4 +252,4 @@ Result<Mesh, std::string> ParsePly(std::string_view file, double metres_per_unit
   return mesh;
 }
 
-}  // namespace wirepose::tools
+}  // namespace wirepose::mesh

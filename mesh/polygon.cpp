@@ -1,8 +1,8 @@
-#include "tools/model_compiler/polygon.h"
+#include "mesh/polygon.h"
 
 #include <algorithm>
 
-namespace wirepose::tools {
+namespace wirepose::mesh {
 namespace {
 
 using Eigen::Vector3d;
@@ -49,4 +49,4 @@ void AppendPolygon(const std::vector<int>& polygon, Mesh& mesh) {
   mesh.triangles.push_back({rest[0], rest[1], rest[2]});
 }
 
-}  // namespace wirepose::tools
+}  // namespace wirepose::mesh

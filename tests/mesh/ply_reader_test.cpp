@@ -1,4 +1,4 @@
-#include "tools/model_compiler/ply_reader.h"
+#include "mesh/ply_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,15 +6,15 @@
 #include <cstring>
 #include <random>
 
-#include "tests/tools/model_test_meshes.h"
-#include "tools/model_compiler/polygon.h"
+#include "tests/mesh/test_meshes.h"
+#include "mesh/polygon.h"
 
 namespace wirepose {
 namespace {
 
 using ::testing::HasSubstr;
-using tools::Mesh;
-using tools::ParsePly;
+using mesh::Mesh;
+using mesh::ParsePly;
 
 const char kAsciiBox[] =
     "ply\r\nformat ascii 1.0\ncomment a box with normals and a colour\nelement vertex 4\nproperty "
@@ -142,7 +142,7 @@ TEST(Polygon, TrianglesCoverConcavePolygonsExactly) {
     }
     for (int k = 0; k < corners; ++k)
       area += mesh.vertices[k].cross(mesh.vertices[(k + 1) % corners]);
-    tools::AppendPolygon(polygon, mesh);
+    mesh::AppendPolygon(polygon, mesh);
     ASSERT_EQ(mesh.triangles.size(), static_cast<std::size_t>(corners - 2));
     double total = 0;
     for (const auto& t : mesh.triangles) {

@@ -1,4 +1,4 @@
-#include "tools/model_compiler/mesh_reader.h"
+#include "mesh/mesh_reader.h"
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -9,9 +9,9 @@
 #include <sstream>
 #include <system_error>
 
-#include "tools/model_compiler/ply_reader.h"
+#include "mesh/ply_reader.h"
 
-namespace wirepose::tools {
+namespace wirepose::mesh {
 namespace {
 
 std::string OneLine(std::string text) {
@@ -83,4 +83,4 @@ Result<Mesh, std::string> ReadMesh(const std::filesystem::path& file, double met
   return mesh;
 }
 
-}  // namespace wirepose::tools
+}  // namespace wirepose::mesh
