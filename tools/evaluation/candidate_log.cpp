@@ -25,7 +25,7 @@ double RelativeError(const PreparedModel& model, const Pose& found, const Pose& 
 }  // namespace
 
 CandidateLog::CandidateLog(const std::filesystem::path& file) : out_(file) {
-  out_ << "scene_id,im_id,obj_id,error_d,visib_fract,score,edges,faces,silhouette,support,inside,visible_px,"
+  out_ << "scene_id,im_id,obj_id,error_d,visib_fract,score,edges,contrast,faces,overrun,support,inside,visible_px,"
           "supported_edges,supported_faces,rms_px,inliers\n";
 }
 
@@ -42,9 +42,9 @@ void CandidateLog::Add(const FrameView& view) {
       visible = truth.visib_fract;
     }
     const Evidence& e = candidate.evidence;
-    out_ << fmt::format("{},{},{},{:.4f},{:.3f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.1f},{},{},{:.4f},{}\n",
-                        view.entry.scene_id, view.entry.im_id, model.view.id, error, visible, candidate.score, e.edges,
-                        e.faces, e.silhouette, e.support, e.inside, e.visible_px, e.supported_edges, e.supported_faces,
+    out_ << fmt::format("{},{},{},{:.4f},{:.3f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.1f},{},{},{:.4f},{}\n",
+                        view.entry.scene_id, view.entry.im_id, model.view.id, error, visible, candidate.score, e.edges, e.contrast,
+                        e.faces, e.overrun, e.support, e.inside, e.visible_px, e.supported_edges, e.supported_faces,
                         candidate.pose.rms_px, candidate.pose.inliers);
   }
 }

@@ -11,20 +11,25 @@ import sys
 
 import numpy as np
 
-NAMES = ['bias', 'edge_density', 'log_length', 'faces', 'silhouette', 'rms']
+NAMES = ['bias', 'edge_density', 'faces', 'contrast', 'overrun', 'inside']
+LOG_LENGTH = 1.0  # given, see ScoreParams
 
 
 def features(row):
     length = max(1.0, float(row['visible_px']))
-    return [1.0, 100 * float(row['edges']) / length, np.log(length / 300), float(row['faces']),
-            float(row['silhouette']), float(row['rms_px'])]
+    return [1.0, 100 * float(row['edges']) / length, float(row['faces']), float(row['contrast']),
+            float(row['overrun']), float(row['inside'])]
 
 
-def fit(x, y, ridge=1.0):
+def given(row):
+    return LOG_LENGTH * np.log(max(1.0, float(row['visible_px'])) / 300)
+
+
+def fit(x, y, offset, ridge=1.0):
     penalty = ridge * np.diag([0.0] + [1.0] * (x.shape[1] - 1))
     w = np.zeros(x.shape[1])
     for _ in range(100):
-        p = 1 / (1 + np.exp(-x @ w))
+        p = 1 / (1 + np.exp(-x @ w - offset))
         step = np.linalg.solve((x * (p * (1 - p))[:, None]).T @ x + penalty + 1e-9 * np.eye(len(w)),
                                x.T @ (y - p) - penalty @ w)
         w += step
@@ -39,14 +44,16 @@ def main():
         sys.exit('fit_score.py: no candidates; name CSV files of `wirepose eval --candidates`')
     x = np.array([features(row) for _, row in rows])
     y = np.array([float(row['error_d']) < 0.1 for _, row in rows], float)
-    fold = np.array([hash((path, row['scene_id'])) % 5 for path, row in rows])
-    w = fit(x, y)
+    offset = np.array([given(row) for _, row in rows])
+    fold = np.array([int(row['scene_id']) % 5 for path, row in rows])
+    w = fit(x, y, offset)
     print(f'{len(y)} candidates, {int(y.sum())} right')
     for name, value in zip(NAMES, w):
         print(f'  float {name} = {value:.3f}F;')
     p = np.zeros(len(y))
     for k in range(5):
-        p[fold == k] = 1 / (1 + np.exp(-x[fold == k] @ fit(x[fold != k], y[fold != k])))
+        held, used = fold == k, fold != k
+        p[held] = 1 / (1 + np.exp(-x[held] @ fit(x[used], y[used], offset[used]) - offset[held]))
     print('score      n  right')
     for low in np.arange(0, 1, 0.1):
         inside = (p >= low) & (p < low + 0.1 + 1e-9)
