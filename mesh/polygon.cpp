@@ -11,15 +11,13 @@ Vector3d NewellNormal(const Mesh& mesh, const std::vector<int>& polygon) {
   Vector3d normal = Vector3d::Zero();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vector3d origin = mesh.vertices[polygon[0]];
-    normal += (mesh.vertices[polygon[i]] - origin)
-                  .cross(mesh.vertices[polygon[(i + 1) % polygon.size()]] - origin);
+    normal += (mesh.vertices[polygon[i]] - origin).cross(mesh.vertices[polygon[(i + 1) % polygon.size()]] - origin);
   }
   return normal;
 }
 
 // Corner `at` of the polygon is an ear when it is convex and no other corner lies in its triangle.
-bool IsEar(const Mesh& mesh, const std::vector<int>& polygon, std::size_t at,
-           const Vector3d& normal) {
+bool IsEar(const Mesh& mesh, const std::vector<int>& polygon, std::size_t at, const Vector3d& normal) {
   const std::size_t n = polygon.size();
   const std::array<int, 3> ear{polygon[(at + n - 1) % n], polygon[at], polygon[(at + 1) % n]};
   if (mesh.AreaNormal(ear).dot(normal) <= 0) return false;

@@ -31,8 +31,8 @@ Result<Mesh, std::string> LoadMesh(const std::filesystem::path& path, double uni
     }
   }
   for (const std::array<int, 3>& t : file->triangles) {
-    mesh.triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-                              static_cast<std::uint32_t>(t[2])});
+    mesh.triangles.push_back(
+        {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
   }
   return mesh;
 }
@@ -40,8 +40,7 @@ Result<Mesh, std::string> LoadMesh(const std::filesystem::path& path, double uni
 Mesh MakeBox(const Vector3& size) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i) {
-    const Vector3 corner((i & 1) != 0 ? 0.5F : -0.5F, (i & 2) != 0 ? 0.5F : -0.5F,
-                         (i & 4) != 0 ? 0.5F : -0.5F);
+    const Vector3 corner((i & 1) != 0 ? 0.5F : -0.5F, (i & 2) != 0 ? 0.5F : -0.5F, (i & 4) != 0 ? 0.5F : -0.5F);
     mesh.vertices.push_back(corner.cwiseProduct(size));
   }
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},

@@ -29,18 +29,18 @@ inline constexpr std::size_t kMaxCorrespondences = 4096;
 inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose
 // Pose hypotheses kept per model after the coarse score. Many of them are one pose.
 inline constexpr std::size_t kMaxHypotheses = 256;
-inline constexpr std::size_t kMaxCandidates = 24;  // corresponding line sets per model after duplicates are merged
-inline constexpr std::size_t kMaxRefined = 8;      // candidates of one model that are refined and verified
-inline constexpr std::size_t kMaxVerified = 64;    // of all models, that compete for the image's edges
+inline constexpr std::size_t kMaxCandidates = 24;    // corresponding line sets per model after duplicates are merged
+inline constexpr std::size_t kMaxRefined = 8;        // candidates of one model that are refined and verified
+inline constexpr std::size_t kMaxVerified = 64;      // of all models, that compete for the image's edges
 inline constexpr std::size_t kMaxEdgeSamples = 512;  // points on visible edges of one pose; the step widens to fit
 
 // --- Models --------------------------------------------------------------------------------------------------------
 inline constexpr std::size_t kMaxModels = 16;          // objects searched for at once (memory budget is stated for 16)
 inline constexpr std::size_t kMaxModelVertices = 512;  // a refrigerator with two doors and handles has 118
 inline constexpr std::size_t kMaxModelTriangles = 1024;
-inline constexpr std::size_t kMaxModelFaces = 256;     // planar surfaces after coplanar triangles are merged
-inline constexpr std::size_t kMaxModelEdges = 256;     // crease edges; also the width of a visibility bit set
-inline constexpr std::size_t kMaxLineSetEdges = 48;    // longest edges, the only ones that found line sets
+inline constexpr std::size_t kMaxModelFaces = 256;   // planar surfaces after coplanar triangles are merged
+inline constexpr std::size_t kMaxModelEdges = 256;   // crease edges; also the width of a visibility bit set
+inline constexpr std::size_t kMaxLineSetEdges = 48;  // longest edges, the only ones that found line sets
 inline constexpr std::size_t kMaxModelLineSets = 2 * kMaxLineSetEdges;  // one parallel, one intersecting per base line
 inline constexpr std::size_t kMaxModelSetMembers = kMaxLineSetEdges * (kMaxLineSetEdges - 1);
 inline constexpr std::size_t kMaxModelSymmetries = 24;  // rotations of a cube, identity included

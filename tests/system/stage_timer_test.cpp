@@ -12,9 +12,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-StageTimer::Clock::time_point At(std::int64_t ns) {
-  return StageTimer::Clock::time_point(nanoseconds(ns));
-}
+StageTimer::Clock::time_point At(std::int64_t ns) { return StageTimer::Clock::time_point(nanoseconds(ns)); }
 
 TEST(StageTimer, NoFrameNoTimes) { EXPECT_TRUE(StageTimer().Summary().empty()); }
 

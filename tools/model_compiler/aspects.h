@@ -29,8 +29,7 @@ Eigen::Vector3d EdgeSample(const mesh::Mesh& mesh, const Crease& crease, int k);
 // the ray until `tolerance` [m] before it and a face beside the crease turns to the camera; borders
 // of open meshes are visible from both sides. O(aspects * creases * samples * log triangles).
 std::vector<Aspect> TraceAspects(const mesh::Mesh& mesh, const std::vector<Face>& faces,
-                                 const std::vector<Crease>& creases, double diameter,
-                                 double tolerance);
+                                 const std::vector<Crease>& creases, double diameter, double tolerance);
 
 }  // namespace wirepose::tools
 

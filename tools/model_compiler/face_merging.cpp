@@ -16,9 +16,8 @@ bool LiesIn(const mesh::Mesh& mesh, int t, const Vector3d& normal, const Vector3
             const FaceTolerance& tolerance) {
   const Vector3d n = mesh.AreaNormal(mesh.triangles[t]).normalized();
   if (n.dot(normal) < std::cos(tolerance.angle_rad)) return false;
-  return std::all_of(mesh.triangles[t].begin(), mesh.triangles[t].end(), [&](int v) {
-    return std::abs(normal.dot(mesh.vertices[v] - point)) <= tolerance.offset;
-  });
+  return std::all_of(mesh.triangles[t].begin(), mesh.triangles[t].end(),
+                     [&](int v) { return std::abs(normal.dot(mesh.vertices[v] - point)) <= tolerance.offset; });
 }
 
 Face Summarize(const mesh::Mesh& mesh, std::vector<int> triangles) {
@@ -28,8 +27,7 @@ Face Summarize(const mesh::Mesh& mesh, std::vector<int> triangles) {
     const auto& v = mesh.triangles[t];
     const Vector3d normal = mesh.AreaNormal(v) / 2;
     face.normal += normal;
-    face.centroid +=
-        normal.norm() * (mesh.vertices[v[0]] + mesh.vertices[v[1]] + mesh.vertices[v[2]]) / 3;
+    face.centroid += normal.norm() * (mesh.vertices[v[0]] + mesh.vertices[v[1]] + mesh.vertices[v[2]]) / 3;
     face.area += normal.norm();
   }
   face.normal.normalize();
@@ -61,8 +59,7 @@ std::vector<Face> MergeCoplanar(const mesh::Mesh& mesh, const FaceTolerance& tol
       const auto v = mesh.triangles[grown[i]];
       for (int k = 0; k < 3; ++k) {
         for (const int next : edges.at(MakeEdgeKey(v[k], v[(k + 1) % 3]))) {
-          if (face_of_triangle[next] >= 0 || !LiesIn(mesh, next, normal, point, tolerance))
-            continue;
+          if (face_of_triangle[next] >= 0 || !LiesIn(mesh, next, normal, point, tolerance)) continue;
           face_of_triangle[next] = id;
           grown.push_back(next);
         }

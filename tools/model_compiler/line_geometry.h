@@ -43,8 +43,7 @@ std::vector<Face> MergeCoplanar(const mesh::Mesh& mesh, const FaceTolerance& tol
 // the two with the largest angle count. By falling length, then by vertices. `tolerance` [m]:
 // within it points coincide.
 std::vector<Crease> FindCreases(const mesh::Mesh& mesh, const std::vector<Face>& faces,
-                                const std::vector<int>& face_of_triangle, double crease_angle_rad,
-                                double tolerance);
+                                const std::vector<int>& face_of_triangle, double crease_angle_rad, double tolerance);
 
 }  // namespace wirepose::tools
 

@@ -17,8 +17,8 @@ struct LineSets {
 // The parameter vector of the pair (base, member). lambda of lines within `parallel_angle_rad` is
 // the distance of the member's middle from the base line, of others that of the common
 // perpendicular.
-ModelSetMember ParameterVector(const mesh::Mesh& mesh, const std::vector<Crease>& creases, int base,
-                               int member, double parallel_angle_rad);
+ModelSetMember ParameterVector(const mesh::Mesh& mesh, const std::vector<Crease>& creases, int base, int member,
+                               double parallel_angle_rad);
 
 // For each of the longest kMaxLineSetEdges creases that an aspect shows, a parallel and an
 // intersecting set over the others of them that some aspect shows together with it; empty sets are

@@ -49,8 +49,7 @@ class PointGrid {
  private:
   using Cell = std::array<std::int64_t, 3>;
   [[nodiscard]] Cell CellOf(const Vector3d& p) const {
-    return {std::llround(p.x() / tolerance_), std::llround(p.y() / tolerance_),
-            std::llround(p.z() / tolerance_)};
+    return {std::llround(p.x() / tolerance_), std::llround(p.y() / tolerance_), std::llround(p.z() / tolerance_)};
   }
   double tolerance_;
   std::map<Cell, std::vector<int>> cells_;
@@ -59,8 +58,7 @@ class PointGrid {
 bool IsDegenerate(const mesh::Mesh& mesh, const Triangle& t, double tolerance) {
   if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
   double longest = 0;
-  for (int k = 0; k < 3; ++k)
-    longest = std::max(longest, (mesh.vertices[t[(k + 1) % 3]] - mesh.vertices[t[k]]).norm());
+  for (int k = 0; k < 3; ++k) longest = std::max(longest, (mesh.vertices[t[(k + 1) % 3]] - mesh.vertices[t[k]]).norm());
   return mesh.AreaNormal(t).norm() <= tolerance * longest;  // height over the longest side
 }
 
@@ -106,8 +104,7 @@ double SignedVolume(const mesh::Mesh& mesh, const std::vector<int>& component, c
 
 // Flood-fills from `seed` over edges with two triangles; `turn[t]` says whether t must be turned to
 // agree with the seed.
-std::vector<int> CollectComponent(const mesh::Mesh& mesh, const EdgeMap& edges, int seed,
-                                  std::vector<int>& turn) {
+std::vector<int> CollectComponent(const mesh::Mesh& mesh, const EdgeMap& edges, int seed, std::vector<int>& turn) {
   std::vector<int> component{seed};
   turn[seed] = 0;
   for (std::size_t i = 0; i < component.size(); ++i) {
@@ -126,8 +123,7 @@ std::vector<int> CollectComponent(const mesh::Mesh& mesh, const EdgeMap& edges, 
   return component;
 }
 
-std::size_t TurnTriangles(const std::vector<int>& component, const std::vector<int>& turn,
-                          mesh::Mesh& mesh) {
+std::size_t TurnTriangles(const std::vector<int>& component, const std::vector<int>& turn, mesh::Mesh& mesh) {
   std::size_t turned = 0;
   for (const int t : component) {
     if (turn[t] == 0) continue;
@@ -138,8 +134,7 @@ std::size_t TurnTriangles(const std::vector<int>& component, const std::vector<i
 }
 
 // The vertex that lies inside the segment from a to b, nearest to a; -1 if none.
-int VertexInside(const mesh::Mesh& mesh, const std::set<int>& candidates, int a, int b,
-                 double tolerance) {
+int VertexInside(const mesh::Mesh& mesh, const std::set<int>& candidates, int a, int b, double tolerance) {
   const Vector3d direction = mesh.vertices[b] - mesh.vertices[a];
   const double length = direction.norm();
   int best = -1;
@@ -181,8 +176,7 @@ std::size_t Weld(double tolerance, mesh::Mesh& mesh) {
   // Sorted first, so that the representative of a cluster does not depend on the file's order.
   std::vector<int> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return Less(mesh.vertices[a], mesh.vertices[b]); });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return Less(mesh.vertices[a], mesh.vertices[b]); });
   std::vector<Vector3d> welded;
   std::vector<int> new_index(mesh.vertices.size());
   PointGrid grid(tolerance);
@@ -244,8 +238,7 @@ std::size_t OrientOutward(mesh::Mesh& mesh) {
   for (int seed = 0; seed < static_cast<int>(mesh.triangles.size()); ++seed) {
     if (turn[seed] >= 0) continue;
     const std::vector<int> component = CollectComponent(mesh, edges, seed, turn);
-    const auto minority =
-        std::count_if(component.begin(), component.end(), [&](int t) { return turn[t] == 1; });
+    const auto minority = std::count_if(component.begin(), component.end(), [&](int t) { return turn[t] == 1; });
     if (2 * minority > static_cast<std::ptrdiff_t>(component.size())) {
       for (const int t : component) turn[t] = 1 - turn[t];
     }
@@ -261,8 +254,7 @@ std::size_t OrientOutward(mesh::Mesh& mesh) {
       area += a;
     }
     centre /= area;
-    for (const int t : component)
-      extent = std::max(extent, (mesh.vertices[mesh.triangles[t][0]] - centre).norm());
+    for (const int t : component) extent = std::max(extent, (mesh.vertices[mesh.triangles[t][0]] - centre).norm());
     if (SignedVolume(mesh, component, centre) < -1e-6 * area * extent) {
       for (const int t : component) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
       turned += component.size();
