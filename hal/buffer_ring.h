@@ -63,9 +63,7 @@ class BufferRing {
     std::atomic<bool> taken{false};
   };
 
-  MutableImageView View(std::vector<std::uint8_t>& pixels) const {
-    return {pixels.data(), width_, height_, width_};
-  }
+  MutableImageView View(std::vector<std::uint8_t>& pixels) const { return {pixels.data(), width_, height_, width_}; }
 
   std::array<Buffer, kCount> buffers_;
   int width_ = 0, height_ = 0;

@@ -53,25 +53,38 @@ CameraError StereoCamera::Close() {
 
 const char* Describe(CameraError error) {
   switch (error) {
-    case CameraError::kOk: return "ok";
-    case CameraError::kWrongState: return "call is not legal in this state";
-    case CameraError::kNotFound: return "camera not found";
-    case CameraError::kBadData: return "malformed calibration or data set";
-    case CameraError::kUnsupported: return "not supported by the camera";
-    case CameraError::kTimeout: return "no frame in time";
-    case CameraError::kNoBuffer: return "every buffer is leased";
-    case CameraError::kEndOfStream: return "end of stream";
-    case CameraError::kDisconnected: return "camera disconnected";
+    case CameraError::kOk:
+      return "ok";
+    case CameraError::kWrongState:
+      return "call is not legal in this state";
+    case CameraError::kNotFound:
+      return "camera not found";
+    case CameraError::kBadData:
+      return "malformed calibration or data set";
+    case CameraError::kUnsupported:
+      return "not supported by the camera";
+    case CameraError::kTimeout:
+      return "no frame in time";
+    case CameraError::kNoBuffer:
+      return "every buffer is leased";
+    case CameraError::kEndOfStream:
+      return "end of stream";
+    case CameraError::kDisconnected:
+      return "camera disconnected";
   }
   return "?";
 }
 
 const char* Describe(FrameStatus status) {
   switch (status) {
-    case FrameStatus::kGood: return "good";
-    case FrameStatus::kImageMissing: return "image missing";
-    case FrameStatus::kImageDamaged: return "image damaged";
-    case FrameStatus::kNotSynchronous: return "left and right not synchronous";
+    case FrameStatus::kGood:
+      return "good";
+    case FrameStatus::kImageMissing:
+      return "image missing";
+    case FrameStatus::kImageDamaged:
+      return "image damaged";
+    case FrameStatus::kNotSynchronous:
+      return "left and right not synchronous";
   }
   return "?";
 }

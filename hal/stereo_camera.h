@@ -21,16 +21,16 @@
 
 namespace wirepose::hal {
 
-enum class [[nodiscard]] CameraError : std::uint8_t {
-  kOk,
-  kWrongState,    // the call is not legal now, see the diagram above
-  kNotFound,      // no such camera, folder or scenario
-  kBadData,       // calibration or data set malformed; detail() says where
-  kUnsupported,   // the camera cannot give what the configuration asks for
-  kTimeout,       // no frame within the time given; the stream goes on
-  kNoBuffer,      // every buffer is leased: release one
-  kEndOfStream,   // a recorded or simulated feed is over; Stop is the only legal call
-  kDisconnected,  // the device is gone; AcquireFrame may be called again to wait for its return
+enum class [[nodiscard]] CameraError : std::uint8_t{
+    kOk,
+    kWrongState,    // the call is not legal now, see the diagram above
+    kNotFound,      // no such camera, folder or scenario
+    kBadData,       // calibration or data set malformed; detail() says where
+    kUnsupported,   // the camera cannot give what the configuration asks for
+    kTimeout,       // no frame within the time given; the stream goes on
+    kNoBuffer,      // every buffer is leased: release one
+    kEndOfStream,   // a recorded or simulated feed is over; Stop is the only legal call
+    kDisconnected,  // the device is gone; AcquireFrame may be called again to wait for its return
 };
 const char* Describe(CameraError error);
 
@@ -44,10 +44,10 @@ const char* Describe(FrameStatus status);
 
 struct StereoFrame {
   FrameStatus status = FrameStatus::kGood;
-  std::uint64_t sequence = 0;    // counts captures, from 0; a gap means lost frames
-  CaptureTime capture_time{};    // middle of the left exposure
+  std::uint64_t sequence = 0;  // counts captures, from 0; a gap means lost frames
+  CaptureTime capture_time{};  // middle of the left exposure
   std::chrono::nanoseconds right_minus_left{0};
-  ImageView left, right;         // 8 bit grey, raw (unrectified); owned by the camera until the lease ends
+  ImageView left, right;  // 8 bit grey, raw (unrectified); owned by the camera until the lease ends
 };
 
 class StereoCamera;

@@ -12,14 +12,12 @@ Result<KitchenVideo, std::string> KitchenVideo::Create(const VideoConfig& config
     return unexpected<std::string>("simulator: frame rate is not in 1..1000 Hz; give 30");
   }
   if (config.samples_per_side < 2 || config.samples_per_side > 6) {
-    return unexpected<std::string>(
-        "simulator: samples per pixel are not 4, 9, 16, 25 or 36; give 16");
+    return unexpected<std::string>("simulator: samples per pixel are not 4, 9, 16, 25 or 36; give 16");
   }
   if (config.threads < 1 || config.threads > 64) {
     return unexpected<std::string>("simulator: threads are not in 1..64; give 2");
   }
-  Result<Scenario, std::string> scenario =
-      KitchenScenario(config.seed, targets, config.calibration);
+  Result<Scenario, std::string> scenario = KitchenScenario(config.seed, targets, config.calibration);
   if (!scenario) return unexpected(scenario.error());
   return KitchenVideo(config, *std::move(scenario));
 }
@@ -34,8 +32,7 @@ StereoRig KitchenVideo::RigAt(std::uint64_t sequence) const {
 }
 
 StereoShot KitchenVideo::Shoot(std::uint64_t sequence) const {
-  const RenderOptions options{config_.samples_per_side, config_.threads,
-                              Mix(config_.seed, sequence)};
+  const RenderOptions options{config_.samples_per_side, config_.threads, Mix(config_.seed, sequence)};
   return ShootStereo(*renderer_, RigAt(sequence), options);
 }
 

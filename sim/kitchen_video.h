@@ -26,8 +26,8 @@ struct VideoConfig {
 class KitchenVideo {
  public:
   // The error is one line: an option out of range, or no target small enough.
-  [[nodiscard]] static Result<KitchenVideo, std::string> Create(
-      const VideoConfig& config, const std::vector<TargetMesh>& targets);
+  [[nodiscard]] static Result<KitchenVideo, std::string> Create(const VideoConfig& config,
+                                                                const std::vector<TargetMesh>& targets);
 
   [[nodiscard]] StereoRig RigAt(std::uint64_t sequence) const;
   [[nodiscard]] StereoShot Shoot(std::uint64_t sequence) const;

@@ -10,8 +10,7 @@ Vector2d Lens::Distort(const Vector2d& xy, Matrix2d* jacobian) const {
   const double x = xy.x(), y = xy.y(), r2 = x * x + y * y;
   const double radial = 1 + r2 * (c_.k1 + r2 * (c_.k2 + r2 * c_.k3));
   if (jacobian != nullptr) {
-    const double slope =
-        2 * (c_.k1 + r2 * (2 * c_.k2 + r2 * 3 * c_.k3));  // d radial / d x = slope x
+    const double slope = 2 * (c_.k1 + r2 * (2 * c_.k2 + r2 * 3 * c_.k3));  // d radial / d x = slope x
     const double mixed = slope * x * y + 2 * c_.p1 * x + 2 * c_.p2 * y;
     *jacobian << radial + slope * x * x + 2 * c_.p1 * y + 6 * c_.p2 * x, mixed, mixed,
         radial + slope * y * y + 6 * c_.p1 * y + 2 * c_.p2 * x;

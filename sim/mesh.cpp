@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/model_compiler/mesh_reader.h"
+#include "mesh/mesh_reader.h"
 
 namespace wirepose::sim {
 
@@ -20,7 +20,7 @@ Vector3 Mesh::Max() const {
 }
 
 Result<Mesh, std::string> LoadMesh(const std::filesystem::path& path, double unit_m) {
-  const Result<tools::Mesh, std::string> file = tools::ReadMesh(path, unit_m);
+  const Result<mesh::Mesh, std::string> file = mesh::ReadMesh(path, unit_m);
   if (!file) return unexpected(file.error());
   Mesh mesh;
   for (const Vector3d& vertex : file->vertices) {
@@ -31,8 +31,8 @@ Result<Mesh, std::string> LoadMesh(const std::filesystem::path& path, double uni
     }
   }
   for (const std::array<int, 3>& t : file->triangles) {
-    mesh.triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-                              static_cast<std::uint32_t>(t[2])});
+    mesh.triangles.push_back(
+        {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
   }
   return mesh;
 }
@@ -40,8 +40,7 @@ Result<Mesh, std::string> LoadMesh(const std::filesystem::path& path, double uni
 Mesh MakeBox(const Vector3& size) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i) {
-    const Vector3 corner((i & 1) != 0 ? 0.5F : -0.5F, (i & 2) != 0 ? 0.5F : -0.5F,
-                         (i & 4) != 0 ? 0.5F : -0.5F);
+    const Vector3 corner((i & 1) != 0 ? 0.5F : -0.5F, (i & 2) != 0 ? 0.5F : -0.5F, (i & 4) != 0 ? 0.5F : -0.5F);
     mesh.vertices.push_back(corner.cwiseProduct(size));
   }
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},

@@ -24,8 +24,7 @@ struct Mesh {
 
 // Reads PLY, OBJ, STL and whatever else assimp does; polygons become triangles. `unit_m`: length of
 // the file's unit. The error is one line: "file: what; remedy".
-[[nodiscard]] Result<Mesh, std::string> LoadMesh(const std::filesystem::path& path,
-                                                 double unit_m = 0.001);
+[[nodiscard]] Result<Mesh, std::string> LoadMesh(const std::filesystem::path& path, double unit_m = 0.001);
 
 // Centred at the origin, faces outwards.
 [[nodiscard]] Mesh MakeBox(const Vector3& size);

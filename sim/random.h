@@ -20,9 +20,7 @@ constexpr std::uint64_t Mix(std::uint64_t x) {
 constexpr std::uint64_t Mix(std::uint64_t seed, std::uint64_t key) { return Mix(seed ^ Mix(key)); }
 
 // 24 bits of a hash as a number in [0, 1).
-constexpr float UnitFloat(std::uint64_t hash) {
-  return static_cast<float>(hash >> 40) * 0x1.0p-24F;
-}
+constexpr float UnitFloat(std::uint64_t hash) { return static_cast<float>(hash >> 40) * 0x1.0p-24F; }
 
 // A standard normal number from one hash (Box-Muller).
 inline float NormalFloat(std::uint64_t hash) {

@@ -10,9 +10,8 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 
 RTCGeometry MakeGeometry(RTCDevice device, const Mesh& mesh, const Pose& T_world_object) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                               mesh.vertices.size()));
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), mesh.vertices.size()));
   for (const Vector3& vertex : mesh.vertices) {
     const Vector3 world = (T_world_object * vertex.cast<double>()).cast<float>();
     for (int i = 0; i < 3; ++i) *vertices++ = world[i];
@@ -47,8 +46,7 @@ RTCRay MakeRay(const Vector3& origin, const Vector3& direction) {
 
 }  // namespace
 
-RayScene::RayScene(const Scene& scene)
-    : device_(rtcNewDevice("threads=1,set_affinity=0")), all_(MakeScene(device_)) {
+RayScene::RayScene(const Scene& scene) : device_(rtcNewDevice("threads=1,set_affinity=0")), all_(MakeScene(device_)) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];

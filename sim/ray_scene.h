@@ -30,8 +30,7 @@ class RayScene {
   // The nearest surface along one ray.
   [[nodiscard]] Hit Intersect(const Vector3& origin, const Vector3& direction) const;
   // Does the ray meet this instance when nothing else is there?
-  [[nodiscard]] bool MeetsAlone(int instance, const Vector3& origin,
-                                const Vector3& direction) const;
+  [[nodiscard]] bool MeetsAlone(int instance, const Vector3& origin, const Vector3& direction) const;
 
   // As Embree's packet functions; `valid` holds -1 for the lanes to trace and 0 for the others.
   void Intersect(const int* valid, RTCRayHit16& rays) const;

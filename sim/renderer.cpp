@@ -27,9 +27,7 @@ struct Film {
         height((camera.height + 2 * margin) * side),
         samples(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
-  float* row(int y) {
-    return samples.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
-  }
+  float* row(int y) { return samples.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width); }
 
   int side;           // samples a pixel, along each axis
   int margin;         // px
@@ -88,15 +86,13 @@ class PixelTracer {
 
   // Writes the side x side samples of one pixel; `out` is its first sample, `stride` leads to the
   // next row of samples.
-  void Trace(const Lens& lens, const Vector2d& pixel, std::uint64_t hash, float* out,
-             std::ptrdiff_t stride) const {
+  void Trace(const Lens& lens, const Vector2d& pixel, std::uint64_t hash, float* out, std::ptrdiff_t stride) const {
     const std::optional<Lens::Ray> centre = lens.RayOf(pixel);
     const PixelSamples places(side_, hash);
     const int count = side_ * side_;
     for (int first = 0; first < count; first += kLanes) {
       std::array<float, kLanes> radiance{};
-      if (centre)
-        TracePacket(*centre, places, hash, first, std::min(kLanes, count - first), radiance);
+      if (centre) TracePacket(*centre, places, hash, first, std::min(kLanes, count - first), radiance);
       for (int k = 0; k < kLanes && first + k < count; ++k) {
         const int i = (first + k) % side_, j = (first + k) / side_;
         out[j * stride + i] = radiance[static_cast<std::size_t>(k)];
@@ -105,8 +101,8 @@ class PixelTracer {
   }
 
  private:
-  void TracePacket(const Lens::Ray& centre, const PixelSamples& places, std::uint64_t hash,
-                   int first, int count, std::array<float, kLanes>& radiance) const {
+  void TracePacket(const Lens::Ray& centre, const PixelSamples& places, std::uint64_t hash, int first, int count,
+                   std::array<float, kLanes>& radiance) const {
     alignas(64) RTCRayHit16 query;
     alignas(64) RTCRay16 shadow;
     alignas(64) std::array<int, kLanes> valid{};
@@ -116,8 +112,7 @@ class PixelTracer {
       // The distortion is straight within a pixel to 1e-4 px, so its derivative serves all samples.
       const Vector2d xy = centre.xy + centre.dxy_dpixel * offset;
       const Vector3d direction = R_world_camera_ * Vector3d(xy.x(), xy.y(), 1);
-      SetRay(query.ray, k, origin_, direction.cast<float>(),
-             std::numeric_limits<float>::infinity());
+      SetRay(query.ray, k, origin_, direction.cast<float>(), std::numeric_limits<float>::infinity());
       query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
       query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
       valid[static_cast<std::size_t>(k)] = -1;
@@ -128,8 +123,7 @@ class PixelTracer {
     alignas(64) std::array<int, kLanes> shadow_valid{};
     for (int k = 0; k < count; ++k) {
       const auto lane = static_cast<std::size_t>(k);
-      shading[lane] =
-          Shade(query, k, (hash >> 32) + static_cast<std::uint64_t>(first + k), hash, shadow);
+      shading[lane] = Shade(query, k, (hash >> 32) + static_cast<std::uint64_t>(first + k), hash, shadow);
       shadow_valid[lane] = shading[lane].direct > 0 ? -1 : 0;
     }
     renderer_.rays().Occluded(shadow_valid.data(), shadow);
@@ -140,8 +134,7 @@ class PixelTracer {
     }
   }
 
-  static void SetRay(RTCRay16& ray, int k, const Vector3& origin, const Vector3& direction,
-                     float far) {
+  static void SetRay(RTCRay16& ray, int k, const Vector3& origin, const Vector3& direction, float far) {
     ray.org_x[k] = origin.x();
     ray.org_y[k] = origin.y();
     ray.org_z[k] = origin.z();
@@ -158,8 +151,7 @@ class PixelTracer {
 
   // Shades lane `k` and sets up its shadow ray. `sample` counts up within the pixel, so that lights
   // and the places on them are spread evenly over its samples.
-  Shading Shade(const RTCRayHit16& query, int k, std::uint64_t sample, std::uint64_t hash,
-                RTCRay16& shadow) const {
+  Shading Shade(const RTCRayHit16& query, int k, std::uint64_t sample, std::uint64_t hash, RTCRay16& shadow) const {
     if (query.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) return {scene_.background, 0};
     const auto index = static_cast<std::size_t>(query.hit.geomID[k]);
     const Instance& instance = scene_.instances[index];
@@ -170,8 +162,7 @@ class PixelTracer {
 
     const Matrix3 R = instance.T_world_object.R.cast<float>();
     const Vector3 p = R.transpose() * (place - instance.T_world_object.t.cast<float>());
-    const float albedo =
-        AlbedoAt(instance.material, renderer_.bounds(index), p, R.transpose() * normal);
+    const float albedo = AlbedoAt(instance.material, renderer_.bounds(index), p, R.transpose() * normal);
     const float up = 0.5F + 0.5F * normal.z();
     const float ambient = scene_.ambient_down + (scene_.ambient_up - scene_.ambient_down) * up;
     return {albedo * ambient, albedo * Light(place, normal, k, sample, hash, shadow)};
@@ -179,8 +170,8 @@ class PixelTracer {
 
   // Radiance of a white surface from one random point of one light, as if it were all the light
   // there is.
-  float Light(const Vector3& place, const Vector3& normal, int k, std::uint64_t sample,
-              std::uint64_t hash, RTCRay16& shadow) const {
+  float Light(const Vector3& place, const Vector3& normal, int k, std::uint64_t sample, std::uint64_t hash,
+              RTCRay16& shadow) const {
     const std::size_t lights = scene_.lights.size();
     if (lights == 0) return 0;
     const AreaLight& light = scene_.lights[sample % lights];
@@ -219,9 +210,8 @@ std::vector<float> PsfWeights(const Film& film, double sigma_px) {
   double sum = 0;
   for (int i = 0; i < count; ++i) {
     const double d = (i + 0.5) / film.side - film.margin - 0.5;  // px from the pixel's centre
-    const double w = sigma_px > 0
-                         ? NormalCdf((d + 0.5) / sigma_px) - NormalCdf((d - 0.5) / sigma_px)
-                         : 1.0 * (std::abs(d) < 0.5);
+    const double w =
+        sigma_px > 0 ? NormalCdf((d + 0.5) / sigma_px) - NormalCdf((d - 0.5) / sigma_px) : 1.0 * (std::abs(d) < 0.5);
     weights.push_back(w);
     sum += w;
   }
@@ -273,8 +263,7 @@ RadianceImage Renderer::Render(const Camera& camera, const RenderOptions& option
   const PixelTracer tracer(*this, camera, options);
   ForEachRow(camera.height + 2 * film.margin, options.threads, [&](int y) {
     for (int x = 0; x < camera.width + 2 * film.margin; ++x) {
-      const std::uint64_t place =
-          (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
+      const std::uint64_t place = (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
       tracer.Trace(lens, Vector2d(x - film.margin, y - film.margin), Mix(options.seed, place),
                    film.row(y * film.side) + x * film.side, film.width);
     }

@@ -33,8 +33,7 @@ struct RadianceImage {
   std::vector<float> pixels;
 
   [[nodiscard]] float operator()(int x, int y) const {
-    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(x)];
+    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
   }
 };
 

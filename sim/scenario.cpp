@@ -18,9 +18,7 @@ constexpr double kWantedVisibility = 0.75;  // of each target, in the first fram
 constexpr int kMaxLayouts = 40;
 constexpr double kDegree = std::numbers::pi / 180;
 
-float Pick(Random& random, double low, double high) {
-  return static_cast<float>(random.Uniform(low, high));
-}
+float Pick(Random& random, double low, double high) { return static_cast<float>(random.Uniform(low, high)); }
 
 std::uint32_t PickSeed(Random& random) { return static_cast<std::uint32_t>(random.Next()); }
 
@@ -128,8 +126,7 @@ class Counter {
     constexpr int kTries = 40;
     for (int i = 0; i < kTries; ++i) {
       Footprint print;
-      print.centre = {random_.Uniform(-region.x_half, region.x_half),
-                      random_.Uniform(region.y_low, region.y_high)};
+      print.centre = {random_.Uniform(-region.x_half, region.x_half), random_.Uniform(region.y_low, region.y_high)};
       print.half = rest.half;
       print.yaw_rad = random_.Uniform(-max_yaw, max_yaw);
       if (!IsFree(print)) continue;
@@ -157,16 +154,14 @@ class Counter {
 
 Material TargetMaterial(Random& random, const std::string& name, float counter_albedo) {
   Material material;
-  material.texture =
-      name.find("dispenser") == std::string::npos ? Texture::kLabel : Texture::kPlain;
+  material.texture = name.find("dispenser") == std::string::npos ? Texture::kLabel : Texture::kPlain;
   material.albedo = StandOut(random, counter_albedo);
   material.second_albedo = StandOut(random, material.albedo);
   material.seed = PickSeed(random);
   return material;
 }
 
-void PlaceTargets(Random& random, const std::vector<const TargetMesh*>& small, Counter& counter,
-                  float counter_albedo) {
+void PlaceTargets(Random& random, const std::vector<const TargetMesh*>& small, Counter& counter, float counter_albedo) {
   std::vector<const TargetMesh*> order = small;
   for (std::size_t i = order.size() - 1; i > 0; --i) {
     std::swap(order[i], order[static_cast<std::size_t>(random.Below(static_cast<int>(i) + 1))]);
@@ -175,15 +170,13 @@ void PlaceTargets(Random& random, const std::vector<const TargetMesh*>& small, C
   for (int i = 0; i < count; ++i) {
     const TargetMesh& target = *order[static_cast<std::size_t>(i)];
     const std::vector<RestingPose> rests = RestingPoses(target.mesh);
-    const RestingPose& rest =
-        rests[static_cast<std::size_t>(random.Below(static_cast<int>(rests.size())))];
+    const RestingPose& rest = rests[static_cast<std::size_t>(random.Below(static_cast<int>(rests.size())))];
     // Tall things stand behind low ones; what has a front shows it.
     const bool is_tall = rest.height > 0.35;
-    const Counter::Region region =
-        is_tall ? Counter::Region{0.22, 0.0, 0.15} : Counter::Region{0.32, -0.25, 0.1};
+    const Counter::Region region = is_tall ? Counter::Region{0.22, 0.0, 0.15} : Counter::Region{0.32, -0.25, 0.1};
     const double max_yaw = rests.size() > 1 ? std::numbers::pi : 40 * kDegree;
-    Instance* placed = counter.Place(target.mesh, rest, region, max_yaw,
-                                     TargetMaterial(random, target.name, counter_albedo));
+    Instance* placed =
+        counter.Place(target.mesh, rest, region, max_yaw, TargetMaterial(random, target.name, counter_albedo));
     if (placed == nullptr) continue;
     placed->obj_id = target.obj_id;
     placed->name = target.name;
@@ -215,8 +208,7 @@ void PlaceDistractors(Random& random, Counter& counter) {
   for (int i = 0; i < count; ++i) {
     Material material;
     const Mesh mesh = DistractorMesh(random, material);
-    (void)counter.Place(mesh, RestingPoses(mesh).front(), {0.6, -0.3, 0.3}, std::numbers::pi,
-                        material);
+    (void)counter.Place(mesh, RestingPoses(mesh).front(), {0.6, -0.3, 0.3}, std::numbers::pi, material);
   }
 }
 
@@ -226,8 +218,7 @@ Pose LookAt(const Vector3d& eye, const Vector3d& target, double roll_rad) {
   const Vector3d x = z.cross(Vector3d::UnitZ()).normalized();
   Pose T_world_camera;
   T_world_camera.R << x, z.cross(x), z;
-  T_world_camera.R =
-      (T_world_camera.R * Eigen::AngleAxisd(roll_rad, Vector3d::UnitZ()).toRotationMatrix()).eval();
+  T_world_camera.R = (T_world_camera.R * Eigen::AngleAxisd(roll_rad, Vector3d::UnitZ()).toRotationMatrix()).eval();
   T_world_camera.t = eye;
   return T_world_camera;
 }
@@ -247,8 +238,7 @@ void AimCamera(Random& random, Scenario& scenario) {
   const double down = random.Uniform(15, 40) * kDegree;
   const double around = random.Uniform(-25, 25) * kDegree;
   const double distance = random.Uniform(top > 0.3 ? 0.95 : 0.7, 1.4);
-  const Vector3d back(std::sin(around) * std::cos(down), -std::cos(around) * std::cos(down),
-                      std::sin(down));
+  const Vector3d back(std::sin(around) * std::cos(down), -std::cos(around) * std::cos(down), std::sin(down));
   const double roll = random.Uniform(-2, 2) * kDegree;
   scenario.rig.T_world_left = LookAt(scenario.look_at + distance * back, scenario.look_at, roll);
 }
@@ -294,15 +284,13 @@ StereoRig Scenario::RigAt(double time_s) const {
   const double up = kBob * std::sin(0.5 * time_s);
   // Turns about axes through `look_at`: the vertical one and the camera's own x axis.
   const Vector3d x = rig.T_world_left.R.col(0);
-  const Matrix3d R =
-      (Eigen::AngleAxisd(around, Vector3d::UnitZ()) * Eigen::AngleAxisd(up, x)).toRotationMatrix();
+  const Matrix3d R = (Eigen::AngleAxisd(around, Vector3d::UnitZ()) * Eigen::AngleAxisd(up, x)).toRotationMatrix();
   StereoRig moved = rig;
   moved.T_world_left = Pose{R, look_at - R * look_at} * rig.T_world_left;
   return moved;
 }
 
-Result<Scenario, std::string> KitchenScenario(std::uint64_t seed,
-                                              const std::vector<TargetMesh>& targets,
+Result<Scenario, std::string> KitchenScenario(std::uint64_t seed, const std::vector<TargetMesh>& targets,
                                               const StereoCalibration& calibration) {
   std::vector<const TargetMesh*> small;
   for (const TargetMesh& target : targets) {

@@ -20,8 +20,8 @@ struct Sensor {
 [[nodiscard]] float AutoExposure(const RadianceImage& image, float target);
 
 // Photons to grey levels. Noise depends on `seed` and the pixel only.
-[[nodiscard]] dataset::GrayImage Expose(const RadianceImage& image, float exposure,
-                                        const Sensor& sensor, std::uint64_t seed);
+[[nodiscard]] dataset::GrayImage Expose(const RadianceImage& image, float exposure, const Sensor& sensor,
+                                        std::uint64_t seed);
 
 }  // namespace wirepose::sim
 

@@ -25,12 +25,10 @@ Camera LeftCamera(const StereoRig& rig) {
 
 Camera RightCamera(const StereoRig& rig) {
   const StereoCalibration& c = rig.calibration;
-  return {c.right, c.width, c.height, rig.T_world_left * c.T_right_left.Inverse(),
-          rig.psf_sigma_px};
+  return {c.right, c.width, c.height, rig.T_world_left * c.T_right_left.Inverse(), rig.psf_sigma_px};
 }
 
-StereoShot ShootStereo(const Renderer& renderer, const StereoRig& rig,
-                       const RenderOptions& options) {
+StereoShot ShootStereo(const Renderer& renderer, const StereoRig& rig, const RenderOptions& options) {
   RenderOptions left = options, right = options;
   left.seed = Mix(options.seed, 1);
   right.seed = Mix(options.seed, 2);
@@ -50,9 +48,8 @@ dataset::FrameRecord ToRecord(int im_id, const StereoRig& rig, const Truth& trut
   record.im_id = im_id;
   record.T_left_world = rig.T_world_left.Inverse();
   for (const ObjectTruth& object : truth.objects) {
-    record.instances.push_back({object.obj_id, object.T_camera_object, object.px_count_all,
-                                object.px_count_in_image, object.px_count_visib, object.visib_fract,
-                                object.bbox_visib});
+    record.instances.push_back({object.obj_id, object.T_camera_object, object.px_count_all, object.px_count_in_image,
+                                object.px_count_visib, object.visib_fract, object.bbox_visib});
   }
   return record;
 }

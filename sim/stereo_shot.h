@@ -17,7 +17,7 @@ struct StereoRig {
   double psf_sigma_px = 0.5;  // blur of both lenses
   Sensor left_sensor;
   Sensor right_sensor{.gain = 0.9F};  // the eyes of real rigs differ
-  float exposure_target = 0.8F;  // both eyes are exposed as the left one asks, see AutoExposure
+  float exposure_target = 0.8F;       // both eyes are exposed as the left one asks, see AutoExposure
 };
 
 struct StereoShot {
@@ -31,8 +31,7 @@ struct StereoShot {
 
 // Renders both eyes. Deterministic: the same arguments give the same bytes, whatever
 // `options.threads` is.
-[[nodiscard]] StereoShot ShootStereo(const Renderer& renderer, const StereoRig& rig,
-                                     const RenderOptions& options);
+[[nodiscard]] StereoShot ShootStereo(const Renderer& renderer, const StereoRig& rig, const RenderOptions& options);
 
 // One eye of the rig as a camera.
 [[nodiscard]] Camera LeftCamera(const StereoRig& rig);

@@ -55,8 +55,7 @@ double Diameter(const Mesh& mesh) {
   double squared = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      squared =
-          std::max(squared, (mesh.vertices[i] - mesh.vertices[j]).cast<double>().squaredNorm());
+      squared = std::max(squared, (mesh.vertices[i] - mesh.vertices[j]).cast<double>().squaredNorm());
     }
   }
   return std::sqrt(squared);
@@ -87,8 +86,7 @@ nlohmann::ordered_json ModelInfo(const Mesh& mesh) {
 bool WritePly(const fs::path& path, const TargetMesh& target) {
   std::ofstream out(path, std::ios::binary);
   out << "ply\nformat ascii 1.0\ncomment " << target.name << ", units mm\nelement vertex "
-      << target.mesh.vertices.size()
-      << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
+      << target.mesh.vertices.size() << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
       << target.mesh.triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
   char line[96];
   for (const Vector3& vertex : target.mesh.vertices) {
@@ -121,9 +119,8 @@ std::vector<Matrix3d> QuarterTurns() {
 bool MapsOntoItself(const Mesh& mesh, const Pose& T, double tolerance) {
   return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const Vector3& vertex) {
     const Vector3d image = T * vertex.cast<double>();
-    return std::any_of(mesh.vertices.begin(), mesh.vertices.end(), [&](const Vector3& other) {
-      return (other.cast<double>() - image).norm() < tolerance;
-    });
+    return std::any_of(mesh.vertices.begin(), mesh.vertices.end(),
+                       [&](const Vector3& other) { return (other.cast<double>() - image).norm() < tolerance; });
   });
 }
 
@@ -137,8 +134,7 @@ Result<std::vector<TargetMesh>, std::string> LoadTargetMeshes(const fs::path& fo
   const std::map<std::string, fs::path> files = MeshFiles(folder, error);
   if (error) return unexpected(folder.string() + ": cannot be listed: " + error.message());
   if (files.empty()) {
-    return unexpected(folder.string() +
-                      ": no mesh (.ply, .obj, .stl) in it; choose another folder");
+    return unexpected(folder.string() + ": no mesh (.ply, .obj, .stl) in it; choose another folder");
   }
   std::map<int, TargetMesh> by_id;
   int greatest = 4;  // ids of the project's own models stay theirs
@@ -148,8 +144,7 @@ Result<std::vector<TargetMesh>, std::string> LoadTargetMeshes(const fs::path& fo
     if (!mesh) return unexpected(mesh.error());
     const int id = OwnId(name) != 0 ? OwnId(name) : ++greatest;
     if (!by_id.emplace(id, TargetMesh{id, name, path, *std::move(mesh)}).second) {
-      return unexpected(path.string() + ": object id " + std::to_string(id) +
-                        " is taken by another file; rename one");
+      return unexpected(path.string() + ": object id " + std::to_string(id) + " is taken by another file; rename one");
     }
   }
   std::vector<TargetMesh> targets;
@@ -168,11 +163,9 @@ std::vector<Pose> BoxSymmetries(const Mesh& mesh) {
   return symmetries;
 }
 
-Result<void, std::string> WriteTargetMeshes(const fs::path& root,
-                                            const std::vector<TargetMesh>& targets) {
+Result<void, std::string> WriteTargetMeshes(const fs::path& root, const std::vector<TargetMesh>& targets) {
   const auto failed = [](const fs::path& path) {
-    return unexpected(path.string() +
-                      ": cannot be written; check folder, permissions and free space");
+    return unexpected(path.string() + ": cannot be written; check folder, permissions and free space");
   };
   nlohmann::ordered_json infos;
   for (const TargetMesh& target : targets) {

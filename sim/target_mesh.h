@@ -22,8 +22,7 @@ struct TargetMesh {
 // the project's own models parcel_box, book, juice_dispenser and refrigerator are 1 to 4; further
 // files count on from the greatest id in alphabetical order. One name in two formats is read once,
 // PLY before OBJ before STL. The error is one line.
-[[nodiscard]] Result<std::vector<TargetMesh>, std::string> LoadTargetMeshes(
-    const std::filesystem::path& folder);
+[[nodiscard]] Result<std::vector<TargetMesh>, std::string> LoadTargetMeshes(const std::filesystem::path& folder);
 
 // Writes ROOT/models as BOP has it: obj_00000N.ply (ASCII, mm) and models_info.json with diameter,
 // bounding box and the symmetries_discrete among the rotations by quarter turns about the axes of

@@ -16,8 +16,8 @@ std::uint32_t Hash(std::uint32_t x) {
 }
 
 float HashUnit(int x, int y, std::uint32_t seed) {
-  const std::uint32_t h = Hash(static_cast<std::uint32_t>(x) * 0x9E3779B1U ^
-                               Hash(static_cast<std::uint32_t>(y) + seed * 0x85EBCA6BU));
+  const std::uint32_t h =
+      Hash(static_cast<std::uint32_t>(x) * 0x9E3779B1U ^ Hash(static_cast<std::uint32_t>(y) + seed * 0x85EBCA6BU));
   return static_cast<float>(h >> 8) * 0x1.0p-24F;
 }
 
@@ -47,8 +47,7 @@ PlanePoint MapToPlane(Mapping mapping, const Bounds& bounds, const Vector3& p, c
     const Vector3 centre = 0.5F * (bounds.low + bounds.high);
     const float radius = 0.5F * (bounds.high.x() - bounds.low.x());
     const float angle = std::atan2(p.y() - centre.y(), p.x() - centre.x()) + 3.1415927F;
-    return {angle * radius, p.z() - bounds.low.z(), 6.2831853F * radius,
-            bounds.high.z() - bounds.low.z(), 6};
+    return {angle * radius, p.z() - bounds.low.z(), 6.2831853F * radius, bounds.high.z() - bounds.low.z(), 6};
   }
   int axis = 0;
   n.cwiseAbs().maxCoeff(&axis);
@@ -106,13 +105,10 @@ bool Text(float x, float y, float row, std::uint32_t seed) {
   return HashUnit(column * 8 + cell, line, seed + 3) < 0.65F;
 }
 
-bool Bars(float x, float module_m, std::uint32_t seed) {
-  return HashUnit(Floor(x / module_m), 5, seed) < 0.5F;
-}
+bool Bars(float x, float module_m, std::uint32_t seed) { return HashUnit(Floor(x / module_m), 5, seed) < 0.5F; }
 
 // An address label: light paper with text rows and a bar code.
-float AddressLabel(const Material& m, float x, float y, float width, float height,
-                   std::uint32_t seed) {
+float AddressLabel(const Material& m, float x, float y, float width, float height, std::uint32_t seed) {
   const float paper = std::min(0.92F, m.albedo + 0.4F), ink = 0.3F * m.albedo;
   const float margin = 0.06F * width;
   if (x < margin || y < margin || x > width - margin || y > height - margin) return paper;
@@ -133,16 +129,13 @@ float Label(const Material& m, const PlanePoint& q) {
     case 1: {  // a glued label
       const float x0 = 0.12F + 0.2F * HashUnit(1, 0, seed), y0 = 0.25F;
       if (x < x0 || x > x0 + 0.5F || y < y0 || y > y0 + 0.55F) return m.albedo;
-      return AddressLabel(m, (x - x0) * q.width, (y - y0) * q.height, 0.5F * q.width,
-                          0.55F * q.height, seed);
+      return AddressLabel(m, (x - x0) * q.width, (y - y0) * q.height, 0.5F * q.width, 0.55F * q.height, seed);
     }
     case 2: {  // a band with a title above it
       if (y > 0.12F && y < 0.32F) return m.second_albedo;
       const bool title = x > 0.1F && x < 0.9F && y > 0.5F && y < 0.85F;
       if (!title) return m.albedo;
-      return Text((x - 0.1F) * q.width, (y - 0.5F) * q.height, 0.35F * q.height, seed)
-                 ? m.second_albedo
-                 : m.albedo;
+      return Text((x - 0.1F) * q.width, (y - 0.5F) * q.height, 0.35F * q.height, seed) ? m.second_albedo : m.albedo;
     }
     default: {  // a picture: a disc on a ground that grows lighter
       const float dx = (x - 0.5F) * q.width, dy = (y - 0.55F) * q.height;
@@ -180,8 +173,7 @@ float AlbedoAt(const Material& material, const Bounds& bounds, const Vector3& p,
   float albedo = Pattern(material, q);
   if (material.noise > 0) {
     // Mottling a few millimetres wide: enough for stereo to hold on to, too little to be an edge.
-    albedo *= 1.0F + material.noise *
-                         ValueNoise(q.u * 250.0F, q.v * 250.0F, material.seed + 101U * q.face);
+    albedo *= 1.0F + material.noise * ValueNoise(q.u * 250.0F, q.v * 250.0F, material.seed + 101U * q.face);
   }
   return std::clamp(albedo, 0.0F, 1.0F);
 }

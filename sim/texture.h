@@ -41,8 +41,7 @@ struct Bounds {
 };
 
 // Albedo in [0, 1] at point `p` [m] with unit normal `n`, both in the object's frame. Pure.
-[[nodiscard]] float AlbedoAt(const Material& material, const Bounds& bounds, const Vector3& p,
-                             const Vector3& n);
+[[nodiscard]] float AlbedoAt(const Material& material, const Bounds& bounds, const Vector3& p, const Vector3& n);
 
 }  // namespace wirepose::sim
 

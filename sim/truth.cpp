@@ -52,8 +52,7 @@ class Observer {
 
  private:
   [[nodiscard]] std::size_t Index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) +
-           static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) + static_cast<std::size_t>(x);
   }
 
   [[nodiscard]] Vector3 ToWorld(const Vector2d& xy) const {
@@ -62,8 +61,7 @@ class Observer {
 
   // The direction of every pixel's centre, in the world; zero where the lens has none.
   void CastCentres() {
-    directions_.resize(static_cast<std::size_t>(camera_.width) *
-                       static_cast<std::size_t>(camera_.height));
+    directions_.resize(static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height));
     ForEachRow(camera_.height, threads_, [&](int y) {
       for (int x = 0; x < camera_.width; ++x) {
         const std::optional<Lens::Ray> ray = lens_.RayOf(Vector2d(x, y));
@@ -134,8 +132,7 @@ class Observer {
 
   [[nodiscard]] bool IsInRawImage(const Vector2d& xy) const {
     const Vector2d pixel = lens_.PixelOf(xy);
-    if (pixel.x() < -0.5 || pixel.y() < -0.5 || pixel.x() >= camera_.width - 0.5 ||
-        pixel.y() >= camera_.height - 0.5) {
+    if (pixel.x() < -0.5 || pixel.y() < -0.5 || pixel.x() >= camera_.width - 0.5 || pixel.y() >= camera_.height - 0.5) {
       return false;
     }
     // Beyond the lens polynomial's fold directions come back into the image; they are not seen
@@ -150,8 +147,7 @@ class Observer {
     const Scene& scene = renderer_.scene();
     const Instance& instance = scene.instances[static_cast<std::size_t>(index)];
     const CameraIntrinsics& c = camera_.intrinsics;
-    const PixelBox widest{-2 * camera_.width, -2 * camera_.height, 3 * camera_.width,
-                          3 * camera_.height};
+    const PixelBox widest{-2 * camera_.width, -2 * camera_.height, 3 * camera_.width, 3 * camera_.height};
     double x0 = widest.x1, y0 = widest.y1, x1 = widest.x0, y1 = widest.y0;
     bool is_behind = false, is_in_front = false;
     for (const Vector3& vertex : scene.meshes[static_cast<std::size_t>(instance.mesh)].vertices) {
@@ -172,9 +168,8 @@ class Observer {
     const auto clamp = [](double value, int low, int high) {
       return static_cast<int>(std::clamp(value, double(low), double(high)));
     };
-    return {clamp(std::floor(x0), widest.x0, widest.x1),
-            clamp(std::floor(y0), widest.y0, widest.y1), clamp(std::ceil(x1), widest.x0, widest.x1),
-            clamp(std::ceil(y1), widest.y0, widest.y1)};
+    return {clamp(std::floor(x0), widest.x0, widest.x1), clamp(std::floor(y0), widest.y0, widest.y1),
+            clamp(std::ceil(x1), widest.x0, widest.x1), clamp(std::ceil(y1), widest.y0, widest.y1)};
   }
 
   const Renderer& renderer_;

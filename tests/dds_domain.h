@@ -20,8 +20,8 @@ class DdsDomain {
   DdsDomain() {
     for (std::uint32_t i = 0; i < 130; ++i) {
       id_ = 100 + (static_cast<std::uint32_t>(getpid()) + i) % 130;
-      const std::string path = (std::filesystem::temp_directory_path() /
-                                ("wirepose_dds_domain_" + std::to_string(id_) + ".lock"));
+      const std::string path =
+          (std::filesystem::temp_directory_path() / ("wirepose_dds_domain_" + std::to_string(id_) + ".lock"));
       file_ = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
       if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) == 0) return;
       if (file_ >= 0) close(file_);

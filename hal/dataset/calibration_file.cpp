@@ -23,8 +23,7 @@ struct Malformed {
 
 class CalibrationReader {
  public:
-  CalibrationReader(std::string file, const YAML::Node& root)
-      : file_(std::move(file)), root_(root) {
+  CalibrationReader(std::string file, const YAML::Node& root) : file_(std::move(file)), root_(root) {
     if (!root_.IsMap()) {
       throw Malformed{file_ + ": not a calibration; write it with cv::FileStorage (K1 D1 ... T)"};
     }
@@ -42,8 +41,7 @@ class CalibrationReader {
   }
 
  private:
-  [[noreturn]] void Fail(const YAML::Node& node, const std::string& key,
-                         const std::string& what) const {
+  [[noreturn]] void Fail(const YAML::Node& node, const std::string& key, const std::string& what) const {
     const YAML::Mark mark = node.Mark();
     const std::string line = mark.is_null() ? "" : ":" + std::to_string(mark.line + 1);
     throw Malformed{file_ + line + ": " + key + ": " + what};
@@ -74,8 +72,8 @@ class CalibrationReader {
       Fail(node, key, "not an !!opencv-matrix with rows, cols and data");
     }
     Matrix m;
-    if (!YAML::convert<int>::decode(node["rows"], m.rows) ||
-        !YAML::convert<int>::decode(node["cols"], m.cols) || !node["data"].IsSequence()) {
+    if (!YAML::convert<int>::decode(node["rows"], m.rows) || !YAML::convert<int>::decode(node["cols"], m.cols) ||
+        !node["data"].IsSequence()) {
       Fail(node, key, "rows and cols must be integers and data a list");
     }
     for (const YAML::Node& element : node["data"]) {
@@ -98,8 +96,7 @@ class CalibrationReader {
     return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.data.data());
   }
 
-  CameraIntrinsics Intrinsics(const std::string& matrix_key,
-                              const std::string& distortion_key) const {
+  CameraIntrinsics Intrinsics(const std::string& matrix_key, const std::string& distortion_key) const {
     const YAML::Node node = Find(matrix_key);
     const Matrix3d K = ReadMatrix3(matrix_key, node);
     if (K(0, 0) <= 0 || K(1, 1) <= 0) Fail(node, matrix_key, "focal length is not positive");
@@ -166,8 +163,7 @@ std::string WithoutOpenCvDirective(std::string text) {
   return text;
 }
 
-void AppendMatrix(std::string& out, const char* key, int rows, int cols,
-                  const std::vector<double>& data) {
+void AppendMatrix(std::string& out, const char* key, int rows, int cols, const std::vector<double>& data) {
   char number[40];
   out += std::string(key) + ": !!opencv-matrix\n   rows: " + std::to_string(rows) +
          "\n   cols: " + std::to_string(cols) + "\n   dt: d\n   data: [ ";
@@ -179,8 +175,7 @@ void AppendMatrix(std::string& out, const char* key, int rows, int cols,
   out += " ]\n";
 }
 
-void AppendCamera(std::string& out, const CameraIntrinsics& c, const char* matrix_key,
-                  const char* distortion_key) {
+void AppendCamera(std::string& out, const CameraIntrinsics& c, const char* matrix_key, const char* distortion_key) {
   AppendMatrix(out, matrix_key, 3, 3, {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1});
   AppendMatrix(out, distortion_key, 1, 5, {c.k1, c.k2, c.p1, c.p2, c.k3});
 }
@@ -199,13 +194,12 @@ Result<StereoCalibration, std::string> ReadCalibration(const std::filesystem::pa
   } catch (const Malformed& e) {
     return unexpected(e.message);
   } catch (const YAML::Exception& e) {
-    return unexpected(path.string() + ":" + std::to_string(e.mark.line + 1) +
-                      ": not legal YAML: " + e.msg + "; write it with cv::FileStorage");
+    return unexpected(path.string() + ":" + std::to_string(e.mark.line + 1) + ": not legal YAML: " + e.msg +
+                      "; write it with cv::FileStorage");
   }
 }
 
-Result<void, std::string> WriteCalibration(const std::filesystem::path& path,
-                                           const StereoCalibration& calibration) {
+Result<void, std::string> WriteCalibration(const std::filesystem::path& path, const StereoCalibration& calibration) {
   const Pose& T = calibration.T_right_left;
   std::vector<double> R(9);
   for (int i = 0; i < 9; ++i) R[static_cast<std::size_t>(i)] = T.R(i / 3, i % 3);
@@ -218,8 +212,7 @@ Result<void, std::string> WriteCalibration(const std::filesystem::path& path,
   out += "image_height: " + std::to_string(calibration.height) + "\n";
   std::ofstream file(path, std::ios::binary);
   if (!(file << out) || !file.flush()) {
-    return unexpected(path.string() +
-                      ": cannot be written; check folder, permissions and free space");
+    return unexpected(path.string() + ": cannot be written; check folder, permissions and free space");
   }
   return {};
 }

@@ -15,8 +15,7 @@ namespace wirepose::dataset {
 // numbers, positive focal lengths, no skew, R a rotation within 1e-3, a baseline between 1 mm and
 // 10 m, an image of at most 16384 x 16384. The error is one line: "file:line: key: what; remedy".
 // Neither throws nor crashes on any input.
-[[nodiscard]] Result<StereoCalibration, std::string> ReadCalibration(
-    const std::filesystem::path& path);
+[[nodiscard]] Result<StereoCalibration, std::string> ReadCalibration(const std::filesystem::path& path);
 
 // Writes what ReadCalibration and cv::FileStorage read, with all digits: reading gives the same
 // doubles back.

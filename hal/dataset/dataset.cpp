@@ -79,8 +79,7 @@ class SceneFile {
     return &found->second;
   }
 
-  [[nodiscard]] double Number(const json& instance, const std::string& place,
-                              const char* key) const {
+  [[nodiscard]] double Number(const json& instance, const std::string& place, const char* key) const {
     const auto found = instance.is_object() ? instance.find(key) : instance.end();
     if (found == instance.end() || !found->is_number() || !std::isfinite(found->get<double>())) {
       Fail(place, std::string(key) + " is missing or not a number; see the BOP layout");
@@ -183,8 +182,7 @@ std::vector<FrameEntry> ReadFrames(const fs::path& folder) {
     std::error_code error;
     if (!scene_id || !entry.is_directory(error)) continue;
     if (!scenes.emplace(*scene_id, entry.path()).second) {
-      throw Malformed{entry.path().string() + ": two folders for scene " +
-                      std::to_string(*scene_id) + "; rename one"};
+      throw Malformed{entry.path().string() + ": two folders for scene " + std::to_string(*scene_id) + "; rename one"};
     }
   }
   std::vector<FrameEntry> frames;
@@ -223,8 +221,6 @@ Result<Dataset, std::string> ReadDataset(const fs::path& root, const std::string
   return dataset;
 }
 
-fs::path ModelPath(const fs::path& root, int obj_id) {
-  return root / "models" / ("obj_" + SixDigits(obj_id) + ".ply");
-}
+fs::path ModelPath(const fs::path& root, int obj_id) { return root / "models" / ("obj_" + SixDigits(obj_id) + ".ply"); }
 
 }  // namespace wirepose::dataset

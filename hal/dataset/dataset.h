@@ -30,8 +30,7 @@ struct FrameEntry {
   int scene_id = 0;
   int im_id = 0;
   std::filesystem::path left_path, right_path;
-  bool has_truth =
-      false;  // scene_gt_cam1.json lists this frame; false: `gt` is empty and says nothing
+  bool has_truth = false;        // scene_gt_cam1.json lists this frame; false: `gt` is empty and says nothing
   std::vector<TrueInstance> gt;  // in the file's order
 };
 

@@ -36,8 +36,7 @@ ordered_json SceneCamera(const CameraIntrinsics& c, const Pose& T_camera_world) 
 
 ordered_json SceneGt(const InstanceRecord& instance, const Pose& T_camera_left) {
   const Pose T = T_camera_left * instance.T_left_model;
-  return {
-      {"obj_id", instance.obj_id}, {"cam_R_m2c", RowMajor(T.R)}, {"cam_t_m2c", Millimetres(T.t)}};
+  return {{"obj_id", instance.obj_id}, {"cam_R_m2c", RowMajor(T.R)}, {"cam_t_m2c", Millimetres(T.t)}};
 }
 
 ordered_json SceneGtInfo(const InstanceRecord& instance) {
@@ -63,8 +62,7 @@ Result<void, std::string> MakeFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    return unexpected(folder.string() + ": cannot be created: " + error.message() +
-                      "; check path and permissions");
+    return unexpected(folder.string() + ": cannot be created: " + error.message() + "; check path and permissions");
   }
   return {};
 }
@@ -79,33 +77,26 @@ Result<void, std::string> InOrder(Steps... steps) {
 
 }  // namespace
 
-Result<DatasetWriter, std::string> DatasetWriter::Create(const fs::path& root,
-                                                         const StereoCalibration& calibration) {
+Result<DatasetWriter, std::string> DatasetWriter::Create(const fs::path& root, const StereoCalibration& calibration) {
   std::error_code error;
   if (fs::exists(root / "calib.yaml", error)) {
     return unexpected(root.string() + ": there is a data set already; choose another folder");
   }
-  const Result<void, std::string> done = InOrder(
-      [&] { return MakeFolder(root / "models"); }, [&] { return MakeFolder(root / "test"); },
-      [&] { return WriteCalibration(root / "calib.yaml", calibration); },
-      [&] {
-        return WriteJson(root / "camera_cam1.json", CameraJson(calibration.left, calibration));
-      },
-      [&] {
-        return WriteJson(root / "camera_cam2.json", CameraJson(calibration.right, calibration));
-      });
+  const Result<void, std::string> done =
+      InOrder([&] { return MakeFolder(root / "models"); }, [&] { return MakeFolder(root / "test"); },
+              [&] { return WriteCalibration(root / "calib.yaml", calibration); },
+              [&] { return WriteJson(root / "camera_cam1.json", CameraJson(calibration.left, calibration)); },
+              [&] { return WriteJson(root / "camera_cam2.json", CameraJson(calibration.right, calibration)); });
   if (!done) return unexpected(done.error());
   return DatasetWriter(root, calibration);
 }
 
-Result<void, std::string> DatasetWriter::AddFrame(int scene_id, const FrameRecord& record,
-                                                  ImageView left, ImageView right,
-                                                  BasicImageView<const std::uint16_t> depth) {
+Result<void, std::string> DatasetWriter::AddFrame(int scene_id, const FrameRecord& record, ImageView left,
+                                                  ImageView right, BasicImageView<const std::uint16_t> depth) {
   const fs::path scene = root_ / "test" / SixDigits(scene_id);
   const std::string file = SixDigits(record.im_id) + ".png";
   records_.push_back(record);
-  return InOrder([&] { return MakeFolder(scene / "gray_cam1"); },
-                 [&] { return MakeFolder(scene / "gray_cam2"); },
+  return InOrder([&] { return MakeFolder(scene / "gray_cam1"); }, [&] { return MakeFolder(scene / "gray_cam2"); },
                  [&] { return WriteGrayPng(scene / "gray_cam1" / file, left); },
                  [&] { return WriteGrayPng(scene / "gray_cam2" / file, right); },
                  [&]() -> Result<void, std::string> {

@@ -21,11 +21,11 @@ inline constexpr double kDepthScale = 0.1;
 // defines them.
 struct InstanceRecord {
   int obj_id = 0;
-  Pose T_left_model;     // raw left camera; metres
-  int px_count_all = 0;  // whole silhouette, without occluders, also what lies outside of the image
-  int px_count_in_image = 0;                    // of these inside the left image
-  int px_count_visib = 0;                       // of these seen
-  double visib_fract = 0;                       // px_count_visib / px_count_all
+  Pose T_left_model;          // raw left camera; metres
+  int px_count_all = 0;       // whole silhouette, without occluders, also what lies outside of the image
+  int px_count_in_image = 0;  // of these inside the left image
+  int px_count_visib = 0;     // of these seen
+  double visib_fract = 0;     // px_count_visib / px_count_all
   std::array<int, 4> bbox_visib{-1, -1, 0, 0};  // x, y, width, height of what is seen, px
 };
 
@@ -41,14 +41,13 @@ class DatasetWriter {
  public:
   // Creates ROOT, ROOT/models and ROOT/test; writes calib.yaml and camera_cam{1,2}.json. Refuses a
   // root that already has a calib.yaml: data sets are never mixed.
-  [[nodiscard]] static Result<DatasetWriter, std::string> Create(
-      const std::filesystem::path& root, const StereoCalibration& calibration);
+  [[nodiscard]] static Result<DatasetWriter, std::string> Create(const std::filesystem::path& root,
+                                                                 const StereoCalibration& calibration);
 
   // Writes the images of one frame and keeps its record for FinishScene. `depth` may be empty (data
   // == nullptr).
-  [[nodiscard]] Result<void, std::string> AddFrame(int scene_id, const FrameRecord& record,
-                                                   ImageView left, ImageView right,
-                                                   BasicImageView<const std::uint16_t> depth);
+  [[nodiscard]] Result<void, std::string> AddFrame(int scene_id, const FrameRecord& record, ImageView left,
+                                                   ImageView right, BasicImageView<const std::uint16_t> depth);
 
   // Writes scene_camera, scene_gt and scene_gt_info of the frames added since the last call.
   [[nodiscard]] Result<void, std::string> FinishScene(int scene_id);

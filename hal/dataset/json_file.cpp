@@ -19,12 +19,10 @@ Result<nlohmann::json, std::string> ReadJson(const std::filesystem::path& path) 
   }
 }
 
-Result<void, std::string> WriteJson(const std::filesystem::path& path,
-                                    const nlohmann::ordered_json& value) {
+Result<void, std::string> WriteJson(const std::filesystem::path& path, const nlohmann::ordered_json& value) {
   std::ofstream file(path, std::ios::binary);
   if (!(file << value.dump(1) << "\n") || !file.flush()) {
-    return unexpected(path.string() +
-                      ": cannot be written; check folder, permissions and free space");
+    return unexpected(path.string() + ": cannot be written; check folder, permissions and free space");
   }
   return {};
 }

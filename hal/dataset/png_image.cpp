@@ -138,8 +138,8 @@ Result<Decoded, ImageError> Decode(const std::filesystem::path& path, Kind kind)
   }
   Reader reader;
   const auto undecodable = [&](const char* place) {
-    return unexpected(Damaged(path, std::string(place) + ": " + reader.error() +
-                                        "; is it a complete PNG file? copy it again"));
+    return unexpected(
+        Damaged(path, std::string(place) + ": " + reader.error() + "; is it a complete PNG file? copy it again"));
   };
   if (!reader.ReadHeader(file.get())) return undecodable("header");
   const std::string mismatch = KindMismatch(reader, kind);
@@ -158,13 +158,11 @@ Result<Decoded, ImageError> Decode(const std::filesystem::path& path, Kind kind)
 
 // ITU-R BT.601 luma in 16 bit fixed point, rounded.
 std::uint8_t Luma(const std::uint8_t* rgb) {
-  return static_cast<std::uint8_t>((19595U * rgb[0] + 38470U * rgb[1] + 7471U * rgb[2] + 32768U) >>
-                                   16);
+  return static_cast<std::uint8_t>((19595U * rgb[0] + 38470U * rgb[1] + 7471U * rgb[2] + 32768U) >> 16);
 }
 
 // As Reader: the only frame that libpng jumps over.
-bool WriteRows(std::FILE* file, ErrorText& error, int width, int height, int bit_depth,
-               png_bytepp rows) {
+bool WriteRows(std::FILE* file, ErrorText& error, int width, int height, int bit_depth, png_bytepp rows) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &error, OnError, OnWarning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
@@ -173,9 +171,8 @@ bool WriteRows(std::FILE* file, ErrorText& error, int width, int height, int bit
   }
   png_init_io(png, file);
   png_set_compression_level(png, 3);  // images with noise hardly get smaller above
-  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
-               bit_depth, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bit_depth,
+               PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_write_info(png, info);
   if (bit_depth == 16 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__) png_set_swap(png);
   png_write_image(png, rows);
@@ -185,8 +182,7 @@ bool WriteRows(std::FILE* file, ErrorText& error, int width, int height, int bit
 }
 
 template <typename T>
-Result<void, std::string> WritePng(const std::filesystem::path& path,
-                                   const BasicImageView<const T>& image) {
+Result<void, std::string> WritePng(const std::filesystem::path& path, const BasicImageView<const T>& image) {
   // libpng asks for writable rows, so it gets a copy.
   const auto width = static_cast<std::size_t>(image.width);
   std::vector<T> pixels(width * static_cast<std::size_t>(image.height));
@@ -197,8 +193,7 @@ Result<void, std::string> WritePng(const std::filesystem::path& path,
     rows.push_back(reinterpret_cast<png_bytep>(row));
   }
   const auto failed = [&](const std::string& what) {
-    return unexpected(path.string() + ": cannot be written: " + what +
-                      "; check folder, permissions and free space");
+    return unexpected(path.string() + ": cannot be written: " + what + "; check folder, permissions and free space");
   };
   File file(std::fopen(path.c_str(), "wb"));
   if (!file) return failed(std::error_code(errno, std::generic_category()).message());
@@ -240,8 +235,7 @@ Result<void, std::string> WriteGrayPng(const std::filesystem::path& path, ImageV
   return WritePng<std::uint8_t>(path, image);
 }
 
-Result<void, std::string> WriteDepthPng(const std::filesystem::path& path,
-                                        BasicImageView<const std::uint16_t> image) {
+Result<void, std::string> WriteDepthPng(const std::filesystem::path& path, BasicImageView<const std::uint16_t> image) {
   return WritePng<std::uint16_t>(path, image);
 }
 

@@ -19,9 +19,7 @@ struct OwnedImage {
   int height = 0;
   std::vector<T> pixels;
 
-  [[nodiscard]] BasicImageView<const T> view() const {
-    return {pixels.data(), width, height, width};
-  }
+  [[nodiscard]] BasicImageView<const T> view() const { return {pixels.data(), width, height, width}; }
   [[nodiscard]] BasicImageView<T> mutable_view() { return {pixels.data(), width, height, width}; }
 };
 
@@ -44,8 +42,7 @@ struct ImageError {
 [[nodiscard]] Result<DepthImage, ImageError> ReadDepthPng(const std::filesystem::path& path);
 
 // Write 8 and 16 bit grey images. The folder must exist. The error is one line as above.
-[[nodiscard]] Result<void, std::string> WriteGrayPng(const std::filesystem::path& path,
-                                                     ImageView image);
+[[nodiscard]] Result<void, std::string> WriteGrayPng(const std::filesystem::path& path, ImageView image);
 [[nodiscard]] Result<void, std::string> WriteDepthPng(const std::filesystem::path& path,
                                                       BasicImageView<const std::uint16_t> image);
 

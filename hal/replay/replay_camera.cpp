@@ -23,20 +23,17 @@ CameraError ReplayCamera::Fail(CameraError error, std::string detail) {
 CameraError ReplayCamera::DoOpen(StereoCalibration& calibration) {
   const double rate = config_.frame_rate_hz;
   if (!(rate >= 0 && rate <= kMaxRate)) {
-    return Fail(CameraError::kUnsupported,
-                "replay: frame rate is not in 0..1000 Hz; 0 means as fast as asked for");
+    return Fail(CameraError::kUnsupported, "replay: frame rate is not in 0..1000 Hz; 0 means as fast as asked for");
   }
   std::error_code error;
   if (!std::filesystem::is_directory(config_.root, error)) {
-    return Fail(CameraError::kNotFound,
-                config_.root.string() + ": no such data set folder; check the path");
+    return Fail(CameraError::kNotFound, config_.root.string() + ": no such data set folder; check the path");
   }
   Result<dataset::Dataset, std::string> dataset = dataset::ReadDataset(config_.root, config_.split);
   if (!dataset) return Fail(CameraError::kBadData, std::move(dataset.error()));
   if (config_.scene_id) {
-    std::erase_if(dataset->frames, [&](const dataset::FrameEntry& frame) {
-      return frame.scene_id != *config_.scene_id;
-    });
+    std::erase_if(dataset->frames,
+                  [&](const dataset::FrameEntry& frame) { return frame.scene_id != *config_.scene_id; });
     if (dataset->frames.empty()) {
       return Fail(CameraError::kNotFound, (config_.root / config_.split).string() + ": scene " +
                                               std::to_string(*config_.scene_id) +
@@ -76,14 +73,13 @@ bool ReplayCamera::WaitUntilDue(std::chrono::nanoseconds timeout) const {
   if (config_.frame_rate_hz == 0) return true;
   const auto due = started_ + TimeOf(next_sequence_);
   const auto wait = due - std::chrono::steady_clock::now();
-  std::this_thread::sleep_for(std::clamp<std::chrono::nanoseconds>(
-      wait, std::chrono::nanoseconds{0}, std::max(timeout, std::chrono::nanoseconds{0})));
+  std::this_thread::sleep_for(std::clamp<std::chrono::nanoseconds>(wait, std::chrono::nanoseconds{0},
+                                                                   std::max(timeout, std::chrono::nanoseconds{0})));
   return wait <= timeout;
 }
 
 FrameStatus ReplayCamera::Load(const std::filesystem::path& path, const MutableImageView& image) {
-  const std::size_t bytes =
-      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  const std::size_t bytes = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   const Result<dataset::GrayImage, dataset::ImageError> file = dataset::ReadGrayPng(path);
   if (file && file->width == image.width && file->height == image.height) {
     std::memcpy(image.data, file->pixels.data(), bytes);
@@ -94,14 +90,13 @@ FrameStatus ReplayCamera::Load(const std::filesystem::path& path, const MutableI
     detail_ = file.error().message;
     return file.error().missing ? FrameStatus::kImageMissing : FrameStatus::kImageDamaged;
   }
-  detail_ = path.string() + ": image is " + std::to_string(file->width) + " x " +
-            std::to_string(file->height) + ", calib.yaml says " + std::to_string(image.width) +
-            " x " + std::to_string(image.height) + "; record it again or calibrate for its size";
+  detail_ = path.string() + ": image is " + std::to_string(file->width) + " x " + std::to_string(file->height) +
+            ", calib.yaml says " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+            "; record it again or calibrate for its size";
   return FrameStatus::kImageDamaged;
 }
 
-Result<StereoCamera::Captured, CameraError> ReplayCamera::DoAcquire(
-    std::chrono::nanoseconds timeout) {
+Result<StereoCamera::Captured, CameraError> ReplayCamera::DoAcquire(std::chrono::nanoseconds timeout) {
   detail_.clear();
   if (!config_.loop && next_sequence_ >= dataset_.frames.size()) {
     return unexpected(Fail(CameraError::kEndOfStream, "replay: the data set's last frame is over"));

@@ -52,8 +52,7 @@ int SamplesPerSide(int samples_per_pixel) {
 // Renders ahead. Lives from Open to Close; its thread from Start to Stop.
 class SimulatedCamera::Worker {
  public:
-  Worker(const SimulatedConfig& config, sim::KitchenVideo video)
-      : config_(config), video_(std::move(video)) {
+  Worker(const SimulatedConfig& config, sim::KitchenVideo video) : config_(config), video_(std::move(video)) {
     ring_.Allocate(video_.calibration().width, video_.calibration().height);
   }
   Worker(const Worker&) = delete;
@@ -92,9 +91,7 @@ class SimulatedCamera::Worker {
 
   Result<Captured, CameraError> Acquire(std::chrono::nanoseconds timeout) {
     std::unique_lock lock(mutex_);
-    const auto can_answer = [&] {
-      return !ready_.empty() || is_over_ || has_failed_ || leased_ == kBuffers;
-    };
+    const auto can_answer = [&] { return !ready_.empty() || is_over_ || has_failed_ || leased_ == kBuffers; };
     if (!changed_.wait_for(lock, timeout, can_answer)) return unexpected(CameraError::kTimeout);
     if (!ready_.empty()) {
       const Captured captured = ready_.front();
@@ -158,15 +155,14 @@ class SimulatedCamera::Worker {
     Captured captured;
     captured.buffer = buffer;
     captured.frame.sequence = sequence;
-    captured.frame.capture_time = CaptureTime(std::chrono::nanoseconds(
-        std::llround(static_cast<double>(sequence) * 1e9 / config_.frame_rate_hz)));
+    captured.frame.capture_time = CaptureTime(
+        std::chrono::nanoseconds(std::llround(static_cast<double>(sequence) * 1e9 / config_.frame_rate_hz)));
     captured.frame.left = ring_.left(buffer);
     captured.frame.right = ring_.right(buffer);
 
     SimulatedTruth truth{sequence, captured.frame.capture_time, {}};
     for (const sim::ObjectTruth& object : shot.truth.objects) {
-      truth.objects.push_back(
-          {object.obj_id, object.name, object.T_camera_object, object.visib_fract});
+      truth.objects.push_back({object.obj_id, object.name, object.T_camera_object, object.visib_fract});
     }
     bool is_written = true;
     if (truth_file_.is_open()) is_written = bool{(truth_file_ << ToJsonLine(truth)).flush()};
@@ -210,17 +206,14 @@ CameraError SimulatedCamera::DoOpen(StereoCalibration& calibration) {
     detail_ = config_.mesh_dir.string() + ": no such folder of meshes; check the path";
     return CameraError::kNotFound;
   }
-  const Result<std::vector<sim::TargetMesh>, std::string> targets =
-      sim::LoadTargetMeshes(config_.mesh_dir);
+  const Result<std::vector<sim::TargetMesh>, std::string> targets = sim::LoadTargetMeshes(config_.mesh_dir);
   if (!targets) {
     detail_ = targets.error();
     return CameraError::kBadData;
   }
-  sim::VideoConfig video_config{config_.seed, config_.frame_rate_hz,
-                                SamplesPerSide(config_.samples_per_pixel)};
+  sim::VideoConfig video_config{config_.seed, config_.frame_rate_hz, SamplesPerSide(config_.samples_per_pixel)};
   if (!config_.calibration_path.empty()) {
-    const Result<StereoCalibration, std::string> rig =
-        dataset::ReadCalibration(config_.calibration_path);
+    const Result<StereoCalibration, std::string> rig = dataset::ReadCalibration(config_.calibration_path);
     if (!rig) {
       detail_ = rig.error();
       return CameraError::kBadData;
@@ -245,8 +238,7 @@ CameraError SimulatedCamera::DoStart() {
   return CameraError::kBadData;
 }
 
-Result<StereoCamera::Captured, CameraError> SimulatedCamera::DoAcquire(
-    std::chrono::nanoseconds timeout) {
+Result<StereoCamera::Captured, CameraError> SimulatedCamera::DoAcquire(std::chrono::nanoseconds timeout) {
   detail_.clear();
   Result<Captured, CameraError> captured = worker_->Acquire(timeout);
   if (captured) return captured;

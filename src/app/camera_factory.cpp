@@ -23,8 +23,7 @@ std::unique_ptr<hal::StereoCamera> CreateSimulated(const Config& config) {
   }
   return std::make_unique<hal::SimulatedCamera>(config.camera.simulated);
 #else
-  throw UsageError(config.file.string() +
-                   ": camera.backend: this build has no simulated backend; " +
+  throw UsageError(config.file.string() + ": camera.backend: this build has no simulated backend; " +
                    "choose another camera or build with WIREPOSE_HOST=ON");
 #endif
 }
@@ -43,8 +42,7 @@ std::unique_ptr<hal::StereoCamera> CreateCamera(const Config& config) {
     case CameraBackend::kUnset:
       break;
   }
-  RefuseMissing(config, "camera.backend",
-                "choose libcamera, replay or simulated, also as --camera");
+  RefuseMissing(config, "camera.backend", "choose libcamera, replay or simulated, also as --camera");
 }
 
 }  // namespace wirepose::app

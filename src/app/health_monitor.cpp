@@ -33,8 +33,7 @@ std::string Join(std::string_view what, std::string_view detail) {
 
 }  // namespace
 
-HealthMonitor::HealthMonitor(std::string_view camera, Clock::time_point started)
-    : started_(started) {
+HealthMonitor::HealthMonitor(std::string_view camera, Clock::time_point started) : started_(started) {
   report_.camera = camera;
   report_.camera_status = "ok";
 }
@@ -57,8 +56,7 @@ void HealthMonitor::FrameArrived(const hal::StereoFrame& frame, std::string_view
       break;
   }
   SetState(HealthState::kBadFrames, hal::Describe(frame.status));
-  SetError(
-      Join("frame " + std::to_string(frame.sequence) + ": " + hal::Describe(frame.status), detail));
+  SetError(Join("frame " + std::to_string(frame.sequence) + ": " + hal::Describe(frame.status), detail));
 }
 
 void HealthMonitor::FrameDone(const RecognitionStatistics& statistics) {
@@ -82,13 +80,12 @@ void HealthMonitor::CameraFailed(hal::CameraError error, std::string_view detail
 void HealthMonitor::Stopped() { SetState(HealthState::kStopped, report_.camera_status); }
 
 bool HealthMonitor::Due(Clock::time_point now) const {
-  return !sent_ || report_.state != sent_state_ || !(report_.camera_status == sent_status_) ||
-         now - *sent_ >= kPeriod;
+  return !sent_ || report_.state != sent_state_ || !(report_.camera_status == sent_status_) || now - *sent_ >= kPeriod;
 }
 
 HealthReport& HealthMonitor::Report(Clock::time_point now) {
-  report_.uptime_ns = static_cast<std::uint64_t>(
-      std::chrono::duration_cast<std::chrono::nanoseconds>(now - started_).count());
+  report_.uptime_ns =
+      static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(now - started_).count());
   return report_;
 }
 

@@ -49,8 +49,7 @@ Config EffectiveConfig(const Options& options) {
   }
   if (!options.models.empty()) config.models = options.models;
   if (config.models.empty()) {
-    throw UsageError(options.config +
-                     ": models: missing; list .wpm files or folders, also as --models");
+    throw UsageError(options.config + ": models: missing; list .wpm files or folders, also as --models");
   }
   return config;
 }
@@ -61,19 +60,17 @@ void AddModels(const Config& config) {
   for (const std::uint32_t id : config.search_for) {
     const auto known = g_models.models();
     if (std::none_of(known.begin(), known.end(), [id](const ModelView& m) { return m.id == id; })) {
-      throw WorkFailed(config.file.string() + ": search_for: no model file has the id " +
-                       std::to_string(id) + "; see `wirepose model show`");
+      throw WorkFailed(config.file.string() + ": search_for: no model file has the id " + std::to_string(id) +
+                       "; see `wirepose model show`");
     }
   }
   for (std::size_t i = 0; i < g_models.models().size(); ++i) {
     const ModelView& model = g_models.models()[i];
     const auto& wanted = config.search_for;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), model.id) == wanted.end())
-      continue;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), model.id) == wanted.end()) continue;
     const RecognizerError error = g_recognizer.AddModel(model);
     if (error != RecognizerError::kOk) {
-      throw WorkFailed(g_models.file(i).string() + ": id " + std::to_string(model.id) + ": " +
-                       Describe(error));
+      throw WorkFailed(g_models.file(i).string() + ": id " + std::to_string(model.id) + ": " + Describe(error));
     }
   }
 }
@@ -81,8 +78,7 @@ void AddModels(const Config& config) {
 void CheckCamera(hal::CameraError error, const hal::StereoCamera& camera) {
   if (error == hal::CameraError::kOk) return;
   const std::string detail(camera.detail());
-  throw WorkFailed(std::string(camera.name()) +
-                   " camera: " + (detail.empty() ? hal::Describe(error) : detail));
+  throw WorkFailed(std::string(camera.name()) + " camera: " + (detail.empty() ? hal::Describe(error) : detail));
 }
 
 void OpenCamera(hal::StereoCamera& camera) {
@@ -98,27 +94,23 @@ void Run(const Options& options) {
   const std::unique_ptr<hal::StereoCamera> camera = CreateCamera(config);
   AddModels(config);
   OpenCamera(*camera);
-  const auto opened =
-      g_publisher.Open({config.bus, config.frame_id, WIREPOSE_VERSION}, g_recognizer.models());
+  const auto opened = g_publisher.Open({config.bus, config.frame_id, WIREPOSE_VERSION}, g_recognizer.models());
   if (!opened) throw WorkFailed(opened.error());
   CheckCamera(camera->Start(), *camera);
 
-  const std::string status = std::string(camera->name()) + " camera, " +
-                             std::to_string(g_recognizer.models().size()) + " models, DDS domain " +
-                             std::to_string(config.bus.domain);
+  const std::string status = std::string(camera->name()) + " camera, " + std::to_string(g_recognizer.models().size()) +
+                             " models, DDS domain " + std::to_string(config.bus.domain);
   std::fprintf(stderr, "wireposed: running: %s\n", status.c_str());
   Service service;
   service.Ready(status);
-  const auto loop =
-      std::make_unique<RobotLoop>(*camera, g_recognizer, g_publisher, service,
-                                  RobotLoopConfig{config.camera.timeout, options.frames});
+  const auto loop = std::make_unique<RobotLoop>(*camera, g_recognizer, g_publisher, service,
+                                                RobotLoopConfig{config.camera.timeout, options.frames});
   loop->Run(g_stop);
   service.Stopping();
   (void)camera->Stop();
   (void)camera->Close();
   g_publisher.Close();
-  std::fprintf(stderr, "wireposed: stopped after %llu frames\n",
-               static_cast<unsigned long long>(loop->frames()));
+  std::fprintf(stderr, "wireposed: stopped after %llu frames\n", static_cast<unsigned long long>(loop->frames()));
 }
 
 // Nothing when the command line only asked for help or version, which has been printed.
@@ -129,10 +121,8 @@ std::optional<Options> ParseCommandLine(int argc, char** argv) {
       "DDS"};
   app.set_version_flag("--version", WIREPOSE_VERSION);
   app.add_option("--config", options.config, "configuration, YAML")->required();
-  app.add_option("--camera", options.camera,
-                 "libcamera, replay or simulated; overrides the configuration");
-  app.add_option("--models", options.models,
-                 "model files (.wpm) or folders; override the configuration");
+  app.add_option("--camera", options.camera, "libcamera, replay or simulated; overrides the configuration");
+  app.add_option("--models", options.models, "model files (.wpm) or folders; override the configuration");
   app.add_option("--frames", options.frames, "end after that many frames; 0: never");
   try {
     app.parse(argc, argv);

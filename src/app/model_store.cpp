@@ -15,8 +15,7 @@ std::vector<fs::path> Expand(const fs::path& path) {
   std::error_code error;
   if (fs::is_regular_file(path, error)) return {path};
   if (!fs::is_directory(path, error)) {
-    throw WorkFailed(path.string() +
-                     ": no such model file or folder; build one with `wirepose model build`");
+    throw WorkFailed(path.string() + ": no such model file or folder; build one with `wirepose model build`");
   }
   std::vector<fs::path> files;
   for (fs::directory_iterator i(path, error), end; !error && i != end; i.increment(error)) {
@@ -69,8 +68,8 @@ std::span<std::byte> ModelStore::ReadInto(const fs::path& file, void* block) con
   const std::uintmax_t size = fs::file_size(file, error);
   if (error) throw WorkFailed(file.string() + ": cannot be read: " + error.message());
   if (size > pool_.block_size()) {
-    throw WorkFailed(file.string() + ": larger than any model can be (" +
-                     std::to_string(pool_.block_size()) + " bytes); this is no model file");
+    throw WorkFailed(file.string() + ": larger than any model can be (" + std::to_string(pool_.block_size()) +
+                     " bytes); this is no model file");
   }
   std::ifstream in(file, std::ios::binary);
   in.read(static_cast<char*>(block), static_cast<std::streamsize>(size));

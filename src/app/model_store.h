@@ -17,9 +17,8 @@ namespace wirepose::app {
 
 // The largest model file that the capacities allow: every section full and padded to its alignment.
 inline constexpr std::size_t kMaxModelFileBytes =
-    sizeof(ModelFileHeader) + kMaxModelVertices * sizeof(ModelVertex) +
-    kMaxModelTriangles * sizeof(ModelTriangle) + kMaxModelFaces * sizeof(ModelFace) +
-    kMaxModelEdges * sizeof(ModelEdge) + kMaxModelLineSets * sizeof(ModelLineSet) +
+    sizeof(ModelFileHeader) + kMaxModelVertices * sizeof(ModelVertex) + kMaxModelTriangles * sizeof(ModelTriangle) +
+    kMaxModelFaces * sizeof(ModelFace) + kMaxModelEdges * sizeof(ModelEdge) + kMaxModelLineSets * sizeof(ModelLineSet) +
     kMaxModelSetMembers * sizeof(ModelSetMember) + kMaxModelSymmetries * sizeof(ModelSymmetry) +
     kMaxModelAspects * sizeof(ModelAspect) + 9 * kModelAlignment;
 

@@ -17,8 +17,8 @@ constexpr std::chrono::milliseconds kRetryPause{100};
 
 }  // namespace
 
-RobotLoop::RobotLoop(hal::StereoCamera& camera, Recognizer& recognizer, Publisher& publisher,
-                     Service& service, const RobotLoopConfig& config)
+RobotLoop::RobotLoop(hal::StereoCamera& camera, Recognizer& recognizer, Publisher& publisher, Service& service,
+                     const RobotLoopConfig& config)
     : camera_(camera),
       recognizer_(recognizer),
       publisher_(publisher),
@@ -52,8 +52,7 @@ void RobotLoop::HandleFrame(hal::FrameLease lease) {
   if (lease->status != hal::FrameStatus::kGood) return;
 
   timer_.FrameBegins();
-  const RecognizerError error =
-      recognizer_.Process(lease->left, lease->right, &timer_, report_.result);
+  const RecognizerError error = recognizer_.Process(lease->left, lease->right, &timer_, report_.result);
   timer_.FrameEnds();
   report_.sequence = lease->sequence;
   report_.capture_time = lease->capture_time;

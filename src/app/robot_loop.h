@@ -24,8 +24,8 @@ struct RobotLoopConfig {
 // frames are good.
 class RobotLoop {
  public:
-  RobotLoop(hal::StereoCamera& camera, Recognizer& recognizer, Publisher& publisher,
-            Service& service, const RobotLoopConfig& config);
+  RobotLoop(hal::StereoCamera& camera, Recognizer& recognizer, Publisher& publisher, Service& service,
+            const RobotLoopConfig& config);
 
   // Runs on a streaming camera until `stop` is set, the feed is over or max_frames have come. A bad
   // frame, a time-out and a lost camera are reported on health, and the loop goes on. Throws

@@ -19,8 +19,7 @@ void Notify([[maybe_unused]] const std::string& text) {
 Service::Service() {
 #ifdef WIREPOSE_SYSTEMD
   std::uint64_t period_us = 0;
-  if (sd_watchdog_enabled(0, &period_us) > 0)
-    watchdog_period_ = std::chrono::microseconds(period_us);
+  if (sd_watchdog_enabled(0, &period_us) > 0) watchdog_period_ = std::chrono::microseconds(period_us);
 #endif
 }
 

@@ -8,11 +8,12 @@
 namespace wirepose::app {
 namespace {
 
-// One more than the nanoseconds, at most what 32 bits hold (4.3 s).
-std::uint32_t SampleOf(StageTimer::Clock::duration time) {
+// A sample is one more than the nanoseconds (0: did not run), at most what 32 bits hold (4.3 s).
+void Add(StageTimer::Clock::duration time, std::uint32_t& sample) {
   const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(time).count();
-  return static_cast<std::uint32_t>(
-      std::clamp<std::int64_t>(ns, 0, std::numeric_limits<std::uint32_t>::max() - 1) + 1);
+  const std::int64_t before = sample == 0 ? 0 : sample - 1;
+  sample = static_cast<std::uint32_t>(
+      std::clamp<std::int64_t>(before + ns, 0, std::numeric_limits<std::uint32_t>::max() - 1) + 1);
 }
 
 // The smallest sample that at least `percent` of all are not above. Reorders `samples`.
@@ -32,12 +33,12 @@ void StageTimer::FrameBegins(Clock::time_point now) {
 }
 
 void StageTimer::StageDoneAt(Stage stage, Clock::time_point now) {
-  samples_[next_][static_cast<std::size_t>(stage)] = SampleOf(now - stage_begin_);
+  Add(now - stage_begin_, samples_[next_][static_cast<std::size_t>(stage)]);  // once a model: the sum
   stage_begin_ = now;
 }
 
 void StageTimer::FrameEnds(Clock::time_point now) {
-  samples_[next_][kFrame] = SampleOf(now - frame_begin_);
+  Add(now - frame_begin_, samples_[next_][kFrame]);
   next_ = (next_ + 1) % kWindow;
   count_ = std::min(count_ + 1, kWindow);
 }

@@ -42,8 +42,8 @@ YAML::Node Parse(const std::filesystem::path& file) {
   try {
     return YAML::Load(ReadWhole(file));
   } catch (const YAML::Exception& e) {
-    throw UsageError(file.string() + ":" + std::to_string(e.mark.line + 1) +
-                     ": not YAML: " + OneLine(e.msg) + "; correct the line");
+    throw UsageError(file.string() + ":" + std::to_string(e.mark.line + 1) + ": not YAML: " + OneLine(e.msg) +
+                     "; correct the line");
   }
 }
 
@@ -104,14 +104,13 @@ bool YamlSection::Read(const std::string& key, std::string& value) {
   return true;
 }
 
-bool YamlSection::Read(const std::string& key, std::int64_t& value, std::int64_t least,
-                       std::int64_t most) {
+bool YamlSection::Read(const std::string& key, std::int64_t& value, std::int64_t least, std::int64_t most) {
   const YAML::Node node = FindScalar(key, "a whole number");
   if (!node) return false;
   std::int64_t number = 0;
   if (!ParseNumber(node.Scalar(), number) || number < least || number > most) {
-    Refuse(key, Quoted(node.Scalar()) + " is not a whole number from " + std::to_string(least) +
-                    " to " + std::to_string(most));
+    Refuse(key, Quoted(node.Scalar()) + " is not a whole number from " + std::to_string(least) + " to " +
+                    std::to_string(most));
   }
   value = number;
   return true;
@@ -123,8 +122,7 @@ bool YamlSection::Read(const std::string& key, double& value, double least, doub
   double number = 0;
   // The negated comparison refuses "nan" too.
   if (!ParseNumber(node.Scalar(), number) || !(number >= least && number <= most)) {
-    Refuse(key,
-           Quoted(node.Scalar()) + " is not a number from " + Text(least) + " to " + Text(most));
+    Refuse(key, Quoted(node.Scalar()) + " is not a number from " + Text(least) + " to " + Text(most));
   }
   value = number;
   return true;
@@ -179,8 +177,7 @@ void YamlSection::Finish() const {
 void YamlSection::Refuse(const std::string& key, const std::string& reason) const {
   const YAML::Node& node = node_;
   const bool present = node && node.IsMap() && node[key];
-  RefuseAt(present ? node[key].Mark() : (node ? node.Mark() : YAML::Mark::null_mark()), key,
-           reason);
+  RefuseAt(present ? node[key].Mark() : (node ? node.Mark() : YAML::Mark::null_mark()), key, reason);
 }
 
 YAML::Node YamlSection::Find(const std::string& key) {
@@ -207,8 +204,7 @@ std::filesystem::path YamlSection::Resolve(const std::string& text) const {
   return path.is_absolute() ? path : (file_.parent_path() / path).lexically_normal();
 }
 
-void YamlSection::RefuseAt(const YAML::Mark& mark, const std::string& key,
-                           const std::string& reason) const {
+void YamlSection::RefuseAt(const YAML::Mark& mark, const std::string& key, const std::string& reason) const {
   std::string place = file_.string();
   if (!mark.is_null()) place.append(":").append(std::to_string(mark.line + 1));
   std::string name = name_;

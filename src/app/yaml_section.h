@@ -46,8 +46,7 @@ class YamlSection {
   YAML::Node FindScalar(const std::string& key, const char* kind);
   YAML::Node FindList(const std::string& key, const char* kind);
   [[nodiscard]] std::filesystem::path Resolve(const std::string& text) const;
-  [[noreturn]] void RefuseAt(const YAML::Mark& mark, const std::string& key,
-                             const std::string& reason) const;
+  [[noreturn]] void RefuseAt(const YAML::Mark& mark, const std::string& key, const std::string& reason) const;
 
   std::filesystem::path file_;
   std::string name_;  // "camera.replay", "" at the top

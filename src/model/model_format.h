@@ -40,7 +40,7 @@ struct ModelEdge {
   std::uint16_t vertex[2];
   std::uint16_t face[2];  // kNoFace where the mesh is open
   float length_m;
-  float dihedral_rad;  // angle between the outward normals: 0 flat, > 0; see `convex`
+  float dihedral_rad;    // angle between the outward normals: 0 flat, > 0; see `convex`
   std::uint32_t convex;  // 1: a ridge, 0: a valley
 };
 
@@ -59,10 +59,10 @@ struct ModelLineSet {
 struct ModelSetMember {
   std::uint16_t edge;
   std::uint16_t common_faces;  // faces that touch both base and member: 0, 1 or 2
-  float angle_rad;         // delta_phi of a parallel, phi of an intersecting line; 0..pi/2
-  float distance_m;        // lambda: between the two infinite lines
-  float nearest_end_m;     // delta_d: shortest distance between end points
-  float farthest_end_m;    // rho or theta: longest distance between end points
+  float angle_rad;             // delta_phi of a parallel, phi of an intersecting line; 0..pi/2
+  float distance_m;            // lambda: between the two infinite lines
+  float nearest_end_m;         // delta_d: shortest distance between end points
+  float farthest_end_m;        // rho or theta: longest distance between end points
 };
 
 // A rigid motion that maps the model onto itself: p -> R p + t.
@@ -88,9 +88,9 @@ struct ModelFileHeader {
   std::uint32_t version;
   std::uint32_t file_size;  // bytes
   std::uint32_t crc32c;
-  std::uint32_t id;  // BOP object id
+  std::uint32_t id;          // BOP object id
   char name[kMaxModelName];  // zero-terminated
-  float diameter_m;  // largest distance between two vertices
+  float diameter_m;          // largest distance between two vertices
   float box_min_m[3];
   float box_max_m[3];
   ModelSection vertices, triangles, faces, edges, line_sets, set_members, symmetries, aspects;

@@ -13,18 +13,15 @@ static_assert(std::endian::native == std::endian::little,
               "records are read in place; a big-endian target needs a copy");
 static_assert(sizeof(ModelFileHeader) % kModelAlignment == 0);
 
-constexpr float kMaxExtent_m =
-    1000;  // beyond it the unit is wrong, and float loses a tenth of a millimetre
-constexpr float kUnitTolerance = 1e-3F;  // of unit vectors and rotations
-constexpr float kLengthTolerance =
-    1e-4F;  // of lengths, relative to the diameter: float rounding and no more
+constexpr float kMaxExtent_m = 1000;       // beyond it the unit is wrong, and float loses a tenth of a millimetre
+constexpr float kUnitTolerance = 1e-3F;    // of unit vectors and rotations
+constexpr float kLengthTolerance = 1e-4F;  // of lengths, relative to the diameter: float rounding and no more
 constexpr float kPi = 3.14159274F;
 
 bool IsLength(float v) { return std::isfinite(v) && v >= 0 && v <= 2 * kMaxExtent_m; }
 
 bool IsUnit(const float (&v)[3]) {
-  const float squared =
-      v[0] * v[0] + v[1] * v[1] + v[2] * v[2];  // NaN and infinity fail the comparison
+  const float squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];  // NaN and infinity fail the comparison
   return std::abs(squared - 1) <= kUnitTolerance;
 }
 
@@ -42,16 +39,14 @@ class SectionReader {
   explicit SectionReader(std::span<const std::byte> file) : file_(file) {}
 
   template <typename Record>
-  std::span<const Record> Take(const ModelSection& section, std::size_t capacity,
-                               bool may_be_empty) {
+  std::span<const Record> Take(const ModelSection& section, std::size_t capacity, bool may_be_empty) {
     static_assert(alignof(Record) <= kModelAlignment);
     if (error_) return {};
     if (section.count > capacity) return Fail<Record>(ModelError::kOverCapacity);
     if (section.count == 0 && !may_be_empty) return Fail<Record>(ModelError::kEmpty);
-    const std::size_t size =
-        section.count * sizeof(Record);  // cannot overflow: the count is within capacity
-    if (section.offset % kModelAlignment != 0 || section.offset < end_ ||
-        section.offset > file_.size() || size > file_.size() - section.offset) {
+    const std::size_t size = section.count * sizeof(Record);  // cannot overflow: the count is within capacity
+    if (section.offset % kModelAlignment != 0 || section.offset < end_ || section.offset > file_.size() ||
+        size > file_.size() - section.offset) {
       return Fail<Record>(ModelError::kBadSection);
     }
     end_ = section.offset + size;
@@ -79,10 +74,8 @@ bool DimensionsAreGood(const ModelView& m) {
   if (!IsLength(m.diameter_m) || m.diameter_m <= 0) return false;
   const float slack = kLengthTolerance * m.diameter_m;
   for (int i = 0; i < 3; ++i) {
-    if (!(std::abs(m.box_min_m[i]) <= kMaxExtent_m && std::abs(m.box_max_m[i]) <= kMaxExtent_m))
-      return false;
-    if (m.box_min_m[i] > m.box_max_m[i] || m.box_max_m[i] - m.box_min_m[i] > m.diameter_m + slack)
-      return false;
+    if (!(std::abs(m.box_min_m[i]) <= kMaxExtent_m && std::abs(m.box_max_m[i]) <= kMaxExtent_m)) return false;
+    if (m.box_min_m[i] > m.box_max_m[i] || m.box_max_m[i] - m.box_min_m[i] > m.diameter_m + slack) return false;
   }
   return (m.box_max_m - m.box_min_m).norm() >= m.diameter_m - slack;
 }
@@ -103,8 +96,7 @@ bool TrianglesAreGood(const ModelView& m) {
     for (const std::uint16_t v : t.vertex) {
       if (v >= m.vertices.size()) return false;
     }
-    if (t.vertex[0] == t.vertex[1] || t.vertex[1] == t.vertex[2] || t.vertex[2] == t.vertex[0])
-      return false;
+    if (t.vertex[0] == t.vertex[1] || t.vertex[1] == t.vertex[2] || t.vertex[2] == t.vertex[0]) return false;
     if (t.face >= m.faces.size()) return false;
   }
   return true;
@@ -128,11 +120,8 @@ bool FacesAreGood(const ModelView& m) {
 }
 
 bool EdgeIsGood(const ModelView& m, const ModelEdge& e) {
-  if (e.vertex[0] >= m.vertices.size() || e.vertex[1] >= m.vertices.size() ||
-      e.vertex[0] == e.vertex[1])
-    return false;
-  if (e.face[0] >= m.faces.size() || (e.face[1] >= m.faces.size() && e.face[1] != kNoFace))
-    return false;
+  if (e.vertex[0] >= m.vertices.size() || e.vertex[1] >= m.vertices.size() || e.vertex[0] == e.vertex[1]) return false;
+  if (e.face[0] >= m.faces.size() || (e.face[1] >= m.faces.size() && e.face[1] != kNoFace)) return false;
   if (e.face[0] == e.face[1] || e.convex > 1) return false;
   if (!IsLength(e.length_m) || e.length_m <= 0) return false;
   if (!(e.dihedral_rad >= 0 && e.dihedral_rad <= kPi)) return false;
@@ -169,8 +158,7 @@ bool SetMembersAreGood(const ModelView& m) {
   for (const ModelSetMember& s : m.set_members) {
     if (s.edge >= m.edges.size() || s.common_faces > 2) return false;
     if (!(s.angle_rad >= 0 && s.angle_rad <= kPi / 2 + kUnitTolerance)) return false;
-    if (!IsLength(s.distance_m) || !IsLength(s.nearest_end_m) || !IsLength(s.farthest_end_m))
-      return false;
+    if (!IsLength(s.distance_m) || !IsLength(s.nearest_end_m) || !IsLength(s.farthest_end_m)) return false;
     if (s.nearest_end_m > s.farthest_end_m) return false;
   }
   return true;
@@ -183,12 +171,10 @@ bool SymmetriesAreGood(const ModelView& m) {
       if (!(std::abs(s.rotation[i]) <= 1 + kUnitTolerance)) return false;
       R(i / 3, i % 3) = s.rotation[i];
     }
-    if ((R * R.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff() > kUnitTolerance)
-      return false;
+    if ((R * R.transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff() > kUnitTolerance) return false;
     if (!(R.determinant() > 0)) return false;
     for (const float t : s.translation_m) {
-      if (!IsLength(std::abs(t) / 2))
-        return false;  // at most twice the distance of the centre from the origin
+      if (!IsLength(std::abs(t) / 2)) return false;  // at most twice the distance of the centre from the origin
     }
   }
   return true;
@@ -222,8 +208,7 @@ constexpr ContentCheck kContentChecks[] = {
     {AspectsAreGood, ModelError::kBadAspect},
 };
 
-Result<void, ModelError> CheckEnvelope(std::span<const std::byte> file,
-                                       const ModelFileHeader& header) {
+Result<void, ModelError> CheckEnvelope(std::span<const std::byte> file, const ModelFileHeader& header) {
   if (header.magic != kModelMagic) return unexpected(ModelError::kNotAModel);
   if (header.version != kModelVersion) return unexpected(ModelError::kWrongVersion);
   if (header.file_size != file.size()) return unexpected(ModelError::kWrongSize);
@@ -233,8 +218,7 @@ Result<void, ModelError> CheckEnvelope(std::span<const std::byte> file,
   return {};
 }
 
-Result<ModelView, ModelError> TakeSections(std::span<const std::byte> file,
-                                           const ModelFileHeader& h) {
+Result<ModelView, ModelError> TakeSections(std::span<const std::byte> file, const ModelFileHeader& h) {
   SectionReader reader(file);
   ModelView m;
   m.vertices = reader.Take<ModelVertex>(h.vertices, kMaxModelVertices, false);
@@ -252,12 +236,10 @@ Result<ModelView, ModelError> TakeSections(std::span<const std::byte> file,
 }  // namespace
 
 Result<ModelView, ModelError> ParseModel(std::span<const std::byte> file) {
-  if (reinterpret_cast<std::uintptr_t>(file.data()) % kModelAlignment != 0)
-    return unexpected(ModelError::kMisaligned);
+  if (reinterpret_cast<std::uintptr_t>(file.data()) % kModelAlignment != 0) return unexpected(ModelError::kMisaligned);
   if (file.size() < sizeof(ModelFileHeader)) return unexpected(ModelError::kTooShort);
   const auto& header = *reinterpret_cast<const ModelFileHeader*>(file.data());
-  if (const auto envelope = CheckEnvelope(file, header); !envelope)
-    return unexpected(envelope.error());
+  if (const auto envelope = CheckEnvelope(file, header); !envelope) return unexpected(envelope.error());
 
   auto model = TakeSections(file, header);
   if (!model) return model;

@@ -28,9 +28,7 @@ struct ModelView {
   std::span<const ModelSymmetry> symmetries;  // without the identity
   std::span<const ModelAspect> aspects;
 
-  [[nodiscard]] Vector3 VertexPosition(std::size_t i) const {
-    return {vertices[i].x, vertices[i].y, vertices[i].z};
-  }
+  [[nodiscard]] Vector3 VertexPosition(std::size_t i) const { return {vertices[i].x, vertices[i].y, vertices[i].z}; }
 };
 
 }  // namespace wirepose

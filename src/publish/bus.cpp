@@ -46,17 +46,16 @@ Qos MakeQos(const TopicSpec& topic) {
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, topic.depth);
-  dds_qset_durability(
-      qos.get(), topic.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
-  dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, topic.depth,
-                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  dds_qset_durability(qos.get(), topic.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, topic.depth, DDS_LENGTH_UNLIMITED,
+                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   dds_qset_writer_data_lifecycle(qos.get(), false);  // as ROS 2's writers
   return qos;
 }
 
 template <typename Create>
-Result<dds_entity_t, std::string> CreateEndpoint(dds_entity_t participant, const TopicSpec& spec,
-                                                 const char* kind, Create create) {
+Result<dds_entity_t, std::string> CreateEndpoint(dds_entity_t participant, const TopicSpec& spec, const char* kind,
+                                                 Create create) {
   const Qos qos = MakeQos(spec);
   const dds_entity_t topic = dds_create_topic(participant, spec.type, spec.name, nullptr, nullptr);
   const dds_entity_t endpoint = topic < 0 ? topic : create(participant, topic, qos.get(), nullptr);
@@ -69,8 +68,7 @@ Result<dds_entity_t, std::string> CreateEndpoint(dds_entity_t participant, const
 
 }  // namespace
 
-const TopicSpec kDetectionsTopic = {"rt/wirepose/detections",
-                                    &vision_msgs_msg_dds__Detection3DArray__desc, 4, false};
+const TopicSpec kDetectionsTopic = {"rt/wirepose/detections", &vision_msgs_msg_dds__Detection3DArray__desc, 4, false};
 const TopicSpec kRecognitionTopic = {"wirepose/recognition", &wirepose_Recognition_desc, 4, false};
 const TopicSpec kHealthTopic = {"wirepose/health", &wirepose_Health_desc, 1, true};
 
@@ -80,16 +78,14 @@ Result<Bus, std::string> Bus::Open(const BusConfig& config) {
   // Somebody else in this process has opened the domain: its settings hold.
   const bool shared = domain == DDS_RETCODE_PRECONDITION_NOT_MET;
   if (domain < 0 && !shared) {
-    return unexpected(
-        Failure(where, domain, "check CYCLONEDDS_URI and that the domain is 0 to 230"));
+    return unexpected(Failure(where, domain, "check CYCLONEDDS_URI and that the domain is 0 to 230"));
   }
   DdsEntity owned_domain(shared ? 0 : domain);
   const dds_entity_t participant = dds_create_participant(config.domain, nullptr, nullptr);
   if (participant < 0) {
     return unexpected(Failure(where + ": no participant", participant,
-                              config.loopback
-                                  ? "with loopback, at most 9 programs share a domain; end one"
-                                  : "check that a network interface is up, or set dds.loopback"));
+                              config.loopback ? "with loopback, at most 9 programs share a domain; end one"
+                                              : "check that a network interface is up, or set dds.loopback"));
   }
   return Bus(std::move(owned_domain), DdsEntity(participant));
 }

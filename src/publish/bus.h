@@ -18,8 +18,7 @@ struct BusConfig {
   bool loopback = false;     // this machine only, without multicast
 };
 
-inline constexpr std::uint32_t kMaxDomain =
-    230;  // above, the UDP ports of the DDS port formula run out
+inline constexpr std::uint32_t kMaxDomain = 230;  // above, the UDP ports of the DDS port formula run out
 
 // A topic of DESIGN's table; reliable and keep-last, all of them.
 struct TopicSpec {
@@ -28,8 +27,7 @@ struct TopicSpec {
   std::int32_t depth;    // samples kept for a slow reader
   bool transient_local;  // who comes late gets the last samples
 };
-extern const TopicSpec
-    kDetectionsTopic;  // rt/wirepose/detections, vision_msgs/Detection3DArray for ROS 2
+extern const TopicSpec kDetectionsTopic;   // rt/wirepose/detections, vision_msgs/Detection3DArray for ROS 2
 extern const TopicSpec kRecognitionTopic;  // wirepose/recognition
 extern const TopicSpec kHealthTopic;       // wirepose/health
 
@@ -67,8 +65,7 @@ class Bus {
   [[nodiscard]] dds_entity_t participant() const { return participant_.get(); }
 
  private:
-  Bus(DdsEntity domain, DdsEntity participant)
-      : domain_(std::move(domain)), participant_(std::move(participant)) {}
+  Bus(DdsEntity domain, DdsEntity participant) : domain_(std::move(domain)), participant_(std::move(participant)) {}
 
   DdsEntity domain_;  // ends after the participant
   DdsEntity participant_;

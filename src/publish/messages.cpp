@@ -10,8 +10,7 @@ namespace {
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 // Bounds of the IDL files, which cannot see capacities.h.
-static_assert(kMaxDetections == 16 && kMaxModes == 4 && kMaxModels == 16 && kMaxModelName == 32 &&
-                  kStageCount == 9,
+static_assert(kMaxDetections == 16 && kMaxModes == 4 && kMaxModels == 16 && kMaxModelName == 32 && kStageCount == 9,
               "change the bounds in dds_idl/*.idl too");
 
 template <typename Sequence, typename Buffer>
@@ -29,8 +28,8 @@ void CopyText(std::string_view text, char (&out)[kSize]) {
 }
 
 const ModelView* FindModel(std::span<const ModelView> models, std::uint32_t id) {
-  const auto found = std::find_if(models.begin(), models.end(),
-                                  [id](const ModelView& model) { return model.id == id; });
+  const auto found =
+      std::find_if(models.begin(), models.end(), [id](const ModelView& model) { return model.id == id; });
   return found == models.end() ? nullptr : &*found;
 }
 
@@ -82,17 +81,15 @@ FixedVector<PoseMode, kMaxModes> ModesOf(const Detection& detection) {
   if (modes.empty()) modes.push_back({detection.T_camera_model, 1.0F});
   // Insertion sort: stable without the heap that std::stable_sort uses.
   for (PoseMode* i = modes.begin(); i != modes.end(); ++i) {
-    PoseMode* const place =
-        std::upper_bound(modes.begin(), i, *i,
-                         [](const PoseMode& a, const PoseMode& b) { return a.weight > b.weight; });
+    PoseMode* const place = std::upper_bound(modes.begin(), i, *i,
+                                             [](const PoseMode& a, const PoseMode& b) { return a.weight > b.weight; });
     std::rotate(place, i, i + 1);
   }
   return modes;
 }
 
 void FillRosDetection(const Detection& detection, std::span<const ModelView> models,
-                      const std_msgs_msg_dds__Header_& header,
-                      vision_msgs_msg_dds__Detection3D_& out) {
+                      const std_msgs_msg_dds__Header_& header, vision_msgs_msg_dds__Detection3D_& out) {
   const FixedText<32> name = ModelName(models, detection.model_id);
   const std::array<double, 36> covariance = RosCovariance(detection.covariance);
   out.header = header;
@@ -108,8 +105,7 @@ void FillRosDetection(const Detection& detection, std::span<const ModelView> mod
   CopyText(detection.track_id == 0 ? FixedText<32>() : TextOf(detection.track_id), out.id);
 }
 
-void FillNativeDetection(const Detection& detection, std::span<const ModelView> models,
-                         wirepose_Detection& out) {
+void FillNativeDetection(const Detection& detection, std::span<const ModelView> models, wirepose_Detection& out) {
   const std::array<double, 36> covariance = RosCovariance(detection.covariance);
   out.model_id = detection.model_id;
   CopyText(ModelName(models, detection.model_id), out.name);
@@ -138,8 +134,7 @@ void FillLists(const RecognitionStatistics& statistics, dds_sequence_wirepose_Li
       {"detections", statistics.detections},
   };
   static_assert(std::size(lists) <= kMaxLists);
-  static_assert(sizeof(RecognitionStatistics) == std::size(lists) * sizeof(ListUse),
-                "a list is missing here");
+  static_assert(sizeof(RecognitionStatistics) == std::size(lists) * sizeof(ListUse), "a list is missing here");
   out._length = 0;
   for (const auto& [name, use] : lists) {
     wirepose_ListUse& entry = out._buffer[out._length++];
@@ -226,8 +221,8 @@ std::array<double, 36> RosCovariance(const Matrix6d& covariance) {
   return out;
 }
 
-void FillMessage(const FrameReport& report, std::span<const ModelView> models,
-                 std::string_view frame_id, DetectionsMessage& message) {
+void FillMessage(const FrameReport& report, std::span<const ModelView> models, std::string_view frame_id,
+                 DetectionsMessage& message) {
   message.value.header = Header(report.capture_time, frame_id);
   auto& out = message.value.detections;
   out._length = 0;
@@ -236,8 +231,8 @@ void FillMessage(const FrameReport& report, std::span<const ModelView> models,
   }
 }
 
-void FillMessage(const FrameReport& report, std::span<const ModelView> models,
-                 std::string_view frame_id, RecognitionMessage& message) {
+void FillMessage(const FrameReport& report, std::span<const ModelView> models, std::string_view frame_id,
+                 RecognitionMessage& message) {
   message.value.frame_sequence = report.sequence;
   message.value.capture_time_ns = report.capture_time.time_since_epoch().count();
   CopyText(frame_id, message.value.frame_id);
@@ -251,15 +246,14 @@ void FillMessage(const FrameReport& report, std::span<const ModelView> models,
   message.value.results_dropped = report.results_dropped;
 }
 
-void FillMessage(const HealthReport& report, std::span<const ModelView> models,
-                 std::string_view version, HealthMessage& message) {
+void FillMessage(const HealthReport& report, std::span<const ModelView> models, std::string_view version,
+                 HealthMessage& message) {
   wirepose_Health& out = message.value;
   out.state = NativeState(report.state);
   CopyText(version, out.version);
   out.uptime_ns = report.uptime_ns;
   const FrameCounts& frames = report.frames;
-  out.frames = {frames.good, frames.missing, frames.damaged, frames.not_synchronous,
-                frames.late, frames.failed};
+  out.frames = {frames.good, frames.missing, frames.damaged, frames.not_synchronous, frames.late, frames.failed};
   CopyText(report.camera, out.camera);
   CopyText(report.camera_status, out.camera_status);
   CopyText(report.last_error, out.last_error);

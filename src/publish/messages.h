@@ -13,8 +13,7 @@
 
 namespace wirepose {
 
-inline constexpr std::size_t kMaxLists =
-    8;  // bounded lists a message can report on; the recognizer has 7
+inline constexpr std::size_t kMaxLists = 8;  // bounded lists a message can report on; the recognizer has 7
 
 // The messages with the storage of their bounded sequences. They point into themselves, hence are
 // neither copied nor moved. Good for writing and for dds_take: the sequences never own their
@@ -29,8 +28,7 @@ class DetectionsMessage {
 
  private:
   std::array<vision_msgs_msg_dds__Detection3D_, kMaxDetections> detections_{};
-  std::array<std::array<vision_msgs_msg_dds__ObjectHypothesisWithPose_, kMaxModes>, kMaxDetections>
-      results_{};
+  std::array<std::array<vision_msgs_msg_dds__ObjectHypothesisWithPose_, kMaxModes>, kMaxDetections> results_{};
 };
 
 class RecognitionMessage {
@@ -74,16 +72,16 @@ std::array<double, 36> RosCovariance(const Matrix6d& covariance);
 // times weight; all modes share the covariance. class_id: model name; id: track id, empty when not
 // tracked; bbox: the model's box at the pose of the detection. header.stamp is the capture time.
 // `models` names what was searched for.
-void FillMessage(const FrameReport& report, std::span<const ModelView> models,
-                 std::string_view frame_id, DetectionsMessage& message);
+void FillMessage(const FrameReport& report, std::span<const ModelView> models, std::string_view frame_id,
+                 DetectionsMessage& message);
 
 // wirepose/recognition.
-void FillMessage(const FrameReport& report, std::span<const ModelView> models,
-                 std::string_view frame_id, RecognitionMessage& message);
+void FillMessage(const FrameReport& report, std::span<const ModelView> models, std::string_view frame_id,
+                 RecognitionMessage& message);
 
 // wirepose/health. `version` is the program's.
-void FillMessage(const HealthReport& report, std::span<const ModelView> models,
-                 std::string_view version, HealthMessage& message);
+void FillMessage(const HealthReport& report, std::span<const ModelView> models, std::string_view version,
+                 HealthMessage& message);
 
 }  // namespace wirepose
 

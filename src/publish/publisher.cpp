@@ -2,17 +2,15 @@
 
 namespace wirepose {
 
-Result<void, std::string> Publisher::Open(const PublisherConfig& config,
-                                          std::span<const ModelView> models) {
+Result<void, std::string> Publisher::Open(const PublisherConfig& config, std::span<const ModelView> models) {
   Close();
   Result<Bus, std::string> bus = Bus::Open(config.bus);
   if (!bus) return unexpected(bus.error());
   const struct {
     const TopicSpec& topic;
     dds_entity_t& writer;
-  } endpoints[] = {{kDetectionsTopic, detections_writer_},
-                   {kRecognitionTopic, recognition_writer_},
-                   {kHealthTopic, health_writer_}};
+  } endpoints[] = {
+      {kDetectionsTopic, detections_writer_}, {kRecognitionTopic, recognition_writer_}, {kHealthTopic, health_writer_}};
   for (const auto& [topic, writer] : endpoints) {
     const Result<dds_entity_t, std::string> created = bus->CreateWriter(topic);
     if (!created) return unexpected(created.error());

@@ -47,9 +47,7 @@ class Publisher {
 
   // Frame reports dropped since the start; messages that DDS refused.
   [[nodiscard]] std::uint64_t results_dropped() const { return outbox_.dropped(); }
-  [[nodiscard]] std::uint64_t write_errors() const {
-    return write_errors_.load(std::memory_order_relaxed);
-  }
+  [[nodiscard]] std::uint64_t write_errors() const { return write_errors_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::size_t queue_high_water() const { return outbox_.high_water(); }
   [[nodiscard]] std::size_t queue_capacity() const { return outbox_.capacity(); }
 

@@ -29,9 +29,7 @@ class FixedText {
     return *this;
   }
   [[nodiscard]] const char* c_str() const { return chars_.data(); }
-  operator std::string_view() const {
-    return chars_.data();
-  }  // NOLINT(google-explicit-constructor)
+  operator std::string_view() const { return chars_.data(); }  // NOLINT(google-explicit-constructor)
   bool operator==(std::string_view other) const { return std::string_view(*this) == other; }
 
  private:

@@ -16,9 +16,7 @@ struct Item {
 };
 // Higher score first, lower id among equals: a strict total order.
 struct Better {
-  bool operator()(const Item& a, const Item& b) const {
-    return a.score != b.score ? a.score > b.score : a.id < b.id;
-  }
+  bool operator()(const Item& a, const Item& b) const { return a.score != b.score ? a.score > b.score : a.id < b.id; }
 };
 
 TEST(KeepBest, BelowCapacityKeepsAll) {

@@ -113,8 +113,7 @@ TEST(MemoryPool, AgreesWithASetOfLiveBlocks) {
         const std::size_t i = random() % live.size();
         const auto [block, fill] = live[i];
         // Nobody wrote into the block while it was ours.
-        ASSERT_TRUE(std::all_of(block, block + pool.block_size(),
-                                [&](std::byte b) { return b == std::byte(fill); }));
+        ASSERT_TRUE(std::all_of(block, block + pool.block_size(), [&](std::byte b) { return b == std::byte(fill); }));
         ASSERT_EQ(pool.Free(block), PoolStatus::kOk);
         live.erase(live.begin() + static_cast<std::ptrdiff_t>(i));
         dead.push_back(block);

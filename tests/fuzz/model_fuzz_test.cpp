@@ -7,16 +7,16 @@
 #include <random>
 
 #include "tests/fuzz/model_fuzz_target.h"
-#include "tests/tools/model_test_meshes.h"
+#include "tests/mesh/test_meshes.h"
+#include "tests/tools/model_test_options.h"
 
 namespace wirepose {
 namespace {
 
 using Bytes = std::vector<std::byte>;
 
-constexpr std::uint32_t kInteresting[] = {0,          1,          0x7F,       0xFF,
-                                          0xFFFF,     0x7FFFFFFF, 0x80000000, 0xFFFFFFFF,
-                                          0x7FC00000, 0x7F800000, 0xFF800000, 0x3F800000};
+constexpr std::uint32_t kInteresting[] = {0,          1,          0x7F,       0xFF,       0xFFFF,     0x7FFFFFFF,
+                                          0x80000000, 0xFFFFFFFF, 0x7FC00000, 0x7F800000, 0xFF800000, 0x3F800000};
 
 // One to six edits: a byte, a telling word, a block copied over another, or an end cut off or
 // appended.
@@ -24,11 +24,8 @@ void Mutate(std::mt19937& random, Bytes& file) {
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
   // Half of the edits go to the header, which is a hundredth of the file and holds the section
   // table.
-  const auto place = [&] {
-    return below(2) == 0 ? below(sizeof(ModelFileHeader)) : below(file.size());
-  };
-  for (std::size_t edits = 1 + below(6); edits > 0 && file.size() > sizeof(ModelFileHeader);
-       --edits) {
+  const auto place = [&] { return below(2) == 0 ? below(sizeof(ModelFileHeader)) : below(file.size()); };
+  for (std::size_t edits = 1 + below(6); edits > 0 && file.size() > sizeof(ModelFileHeader); --edits) {
     const std::size_t at = place();
     switch (below(8)) {
       case 0:

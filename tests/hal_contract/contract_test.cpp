@@ -91,8 +91,7 @@ class CameraContract : public testing::TestWithParam<Backend> {
         }
       }
       for (int i = 0; i < 8; ++i) {
-        bytes.push_back(static_cast<std::uint8_t>(
-            (*lease)->capture_time.time_since_epoch().count() >> (8 * i)));
+        bytes.push_back(static_cast<std::uint8_t>((*lease)->capture_time.time_since_epoch().count() >> (8 * i)));
       }
       frames.push_back(std::move(bytes));
     }
@@ -257,9 +256,7 @@ TEST_P(CameraContract, AnyOrderOfCallsFollowsTheStateMachine) {
   State state = State::kClosed;
   std::mt19937 random(5);
   for (int i = 0; i < 40; ++i) {
-    const auto legal = [](bool is_legal) {
-      return is_legal ? CameraError::kOk : CameraError::kWrongState;
-    };
+    const auto legal = [](bool is_legal) { return is_legal ? CameraError::kOk : CameraError::kWrongState; };
     switch (random() % 5) {
       case 0:
         ASSERT_EQ(camera_->Open(), legal(state == State::kClosed));
@@ -288,11 +285,8 @@ TEST_P(CameraContract, AnyOrderOfCallsFollowsTheStateMachine) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, CameraContract,
-                         testing::Values(Replay(), PacedReplay(), Simulated()),
-                         [](const testing::TestParamInfo<Backend>& backend) {
-                           return backend.param.name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Backends, CameraContract, testing::Values(Replay(), PacedReplay(), Simulated()),
+                         [](const testing::TestParamInfo<Backend>& backend) { return backend.param.name; });
 
 }  // namespace
 }  // namespace wirepose::hal

@@ -185,8 +185,7 @@ TEST_F(DatasetTest, TruthAndItsInfoMustBelongTogether) {
 }
 
 TEST_F(DatasetTest, TruthIsOptional) {
-  for (const char* file :
-       {"scene_gt_cam1.json", "scene_gt_info_cam1.json", "scene_camera_cam1.json"}) {
+  for (const char* file : {"scene_gt_cam1.json", "scene_gt_info_cam1.json", "scene_camera_cam1.json"}) {
     fs::remove(root_ / "test/000001" / file);
   }
   fs::remove(root_ / "test/000002/scene_gt_info_cam1.json");
@@ -249,9 +248,7 @@ TEST(RealData, EveryStereoSetReads) {
 
 class PngTest : public testing::Test {
  protected:
-  [[nodiscard]] std::string File(const std::string& name) const {
-    return (folder_.path() / name).string();
-  }
+  [[nodiscard]] std::string File(const std::string& name) const { return (folder_.path() / name).string(); }
   test::TemporaryFolder folder_;
 };
 

@@ -60,8 +60,7 @@ TEST_F(ReplayTest, GivesTheFilesBytes) {
 TEST_F(ReplayTest, BadFramesAreReportedAndTheStreamGoesOn) {
   std::filesystem::remove(Left(0));
   test::WriteText(Left(1), test::ReadText(Left(1)).substr(0, 400));
-  ASSERT_TRUE(dataset::WriteGrayPng(
-      Left(2), dataset::GrayImage{8, 8, std::vector<std::uint8_t>(64)}.view()));
+  ASSERT_TRUE(dataset::WriteGrayPng(Left(2), dataset::GrayImage{8, 8, std::vector<std::uint8_t>(64)}.view()));
   ReplayCamera camera(config_);
   const std::vector<Seen> seen = Play(camera);
   ASSERT_EQ(seen.size(), 6U);

@@ -63,8 +63,7 @@ TEST_F(SimulatedTest, TruthFileAgreesWithTruthAndSimulator) {
   const auto video = sim::KitchenVideo::Create(video_config, *targets);
   ASSERT_TRUE(video);
   EXPECT_EQ(video->Shoot(2).left.pixels, last_left) << "what `wirepose sim render` writes";
-  EXPECT_EQ(video->Shoot(2).truth.objects[0].T_camera_object.t,
-            camera.Truth(2)->objects[0].T_camera_model.t);
+  EXPECT_EQ(video->Shoot(2).truth.objects[0].T_camera_object.t, camera.Truth(2)->objects[0].T_camera_model.t);
 }
 
 TEST_F(SimulatedTest, TimesOutWhileRendering) {
@@ -89,8 +88,7 @@ TEST_F(SimulatedTest, RefusesBadConfigurations) {
   EXPECT_EQ(open([](auto& c) { c.samples_per_pixel = 5; }), CameraError::kUnsupported);
   EXPECT_EQ(open([](auto& c) { c.samples_per_pixel = -4; }), CameraError::kUnsupported);
   EXPECT_EQ(open([](auto& c) { c.frame_rate_hz = 0; }), CameraError::kUnsupported);
-  EXPECT_EQ(open([&](auto& c) { c.calibration_path = folder_.path() / "no.yaml"; }),
-            CameraError::kBadData);
+  EXPECT_EQ(open([&](auto& c) { c.calibration_path = folder_.path() / "no.yaml"; }), CameraError::kBadData);
   std::filesystem::create_directory(folder_.path() / "empty");
   EXPECT_EQ(open([&](auto& c) { c.mesh_dir = folder_.path() / "empty"; }), CameraError::kBadData);
 }

@@ -23,8 +23,7 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     static int count = 0;
-    path_ = fs::temp_directory_path() /
-            ("wirepose_hal_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    path_ = fs::temp_directory_path() / ("wirepose_hal_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
     fs::create_directories(path_);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
@@ -57,8 +56,8 @@ inline StereoCalibration SmallCalibration() {
 inline dataset::GrayImage Pattern(int frame, int eye) {
   dataset::GrayImage image{kWidth, kHeight, std::vector<std::uint8_t>(kWidth * kHeight)};
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    image.pixels[i] = static_cast<std::uint8_t>(i * 7 + i / kWidth * 13 +
-                                                static_cast<std::size_t>(frame * 31 + eye * 101));
+    image.pixels[i] =
+        static_cast<std::uint8_t>(i * 7 + i / kWidth * 13 + static_cast<std::size_t>(frame * 31 + eye * 101));
   }
   return image;
 }
@@ -78,16 +77,14 @@ inline void WriteDataset(const fs::path& root, int frames) {
       record.im_id = i;
       dataset::InstanceRecord instance;
       instance.obj_id = 3;
-      instance.T_left_model.R =
-          Eigen::AngleAxisd(0.1 * number, Vector3d::UnitY()).toRotationMatrix();
+      instance.T_left_model.R = Eigen::AngleAxisd(0.1 * number, Vector3d::UnitY()).toRotationMatrix();
       instance.T_left_model.t = Vector3d(0.01 * number, -0.02, 0.9);
       instance.px_count_all = 200;
       instance.px_count_in_image = 180;
       instance.px_count_visib = 100 + number;
       instance.visib_fract = instance.px_count_visib / 200.0;
       record.instances = {instance};
-      OrThrow(
-          writer.AddFrame(scene, record, Pattern(number, 0).view(), Pattern(number, 1).view(), {}));
+      OrThrow(writer.AddFrame(scene, record, Pattern(number, 0).view(), Pattern(number, 1).view(), {}));
     }
     OrThrow(writer.FinishScene(scene));
   }
@@ -112,9 +109,7 @@ inline std::string ReadText(const fs::path& path) {
   return text.str();
 }
 
-inline void WriteText(const fs::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
+inline void WriteText(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
 }  // namespace wirepose::hal::test
 

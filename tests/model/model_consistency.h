@@ -19,16 +19,13 @@ inline const char* FindInconsistency(const ModelView& m) {
   if (m.triangles.empty() || m.triangles.size() > kMaxModelTriangles) return "triangle count";
   if (m.faces.empty() || m.faces.size() > kMaxModelFaces) return "face count";
   if (m.edges.empty() || m.edges.size() > kMaxModelEdges) return "edge count";
-  if (m.line_sets.size() > kMaxModelLineSets || m.set_members.size() > kMaxModelSetMembers)
-    return "set counts";
-  if (m.symmetries.size() >= kMaxModelSymmetries || m.aspects.size() > kMaxModelAspects)
-    return "other counts";
+  if (m.line_sets.size() > kMaxModelLineSets || m.set_members.size() > kMaxModelSetMembers) return "set counts";
+  if (m.symmetries.size() >= kMaxModelSymmetries || m.aspects.size() > kMaxModelAspects) return "other counts";
   for (std::size_t v = 0; v < m.vertices.size(); ++v) {
     if (!m.VertexPosition(v).allFinite()) return "vertex";
   }
   for (const ModelTriangle& t : m.triangles) {
-    if (std::max({t.vertex[0], t.vertex[1], t.vertex[2]}) >= m.vertices.size())
-      return "triangle vertex";
+    if (std::max({t.vertex[0], t.vertex[1], t.vertex[2]}) >= m.vertices.size()) return "triangle vertex";
     if (t.face >= m.faces.size()) return "triangle face";
   }
   std::size_t triangles = 0;
@@ -47,8 +44,7 @@ inline const char* FindInconsistency(const ModelView& m) {
     if (std::max(edge.vertex[0], edge.vertex[1]) >= m.vertices.size()) return "edge vertex";
     if (edge.face[0] >= m.faces.size()) return "edge face";
     if (edge.face[1] >= m.faces.size() && edge.face[1] != kNoFace) return "edge face";
-    if (!(edge.length_m > 0) || !(edge.dihedral_rad >= 0 && edge.dihedral_rad < 3.15F))
-      return "edge numbers";
+    if (!(edge.length_m > 0) || !(edge.dihedral_rad >= 0 && edge.dihedral_rad < 3.15F)) return "edge numbers";
     if (e > 0 && edge.length_m > m.edges[e - 1].length_m) return "edge order";
   }
   for (const ModelLineSet& s : m.line_sets) {
@@ -63,13 +59,11 @@ inline const char* FindInconsistency(const ModelView& m) {
   }
   for (const ModelSymmetry& s : m.symmetries) {
     const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> R(s.rotation);
-    if ((R * R.transpose() - Matrix3::Identity()).norm() > 1e-2F || R.determinant() < 0.9F)
-      return "symmetry rotation";
+    if ((R * R.transpose() - Matrix3::Identity()).norm() > 1e-2F || R.determinant() < 0.9F) return "symmetry rotation";
     if (!Vector3(s.translation_m).allFinite()) return "symmetry translation";
   }
   for (const ModelAspect& a : m.aspects) {
-    if (std::abs(Vector3(a.direction).norm() - 1) > 1e-3F || !(a.distance_m > 0))
-      return "aspect camera";
+    if (std::abs(Vector3(a.direction).norm() - 1) > 1e-3F || !(a.distance_m > 0)) return "aspect camera";
     for (std::size_t e = m.edges.size(); e < kMaxModelEdges; ++e) {
       if ((a.visible_edges[e / 32] >> (e % 32) & 1U) != 0) return "aspect bits";
     }

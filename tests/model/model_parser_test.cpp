@@ -9,8 +9,9 @@
 #include <set>
 #include <string>
 
+#include "tests/mesh/test_meshes.h"
 #include "tests/model/model_consistency.h"
-#include "tests/tools/model_test_meshes.h"
+#include "tests/tools/model_test_options.h"
 #include "tools/model_compiler/model_writer.h"
 
 namespace wirepose {
@@ -53,9 +54,7 @@ TEST(ModelParser, RefusesEveryTruncation) {
     const Bytes file(GoodModel().begin(), GoodModel().begin() + static_cast<std::ptrdiff_t>(size));
     const auto model = ParseModel(file);
     ASSERT_FALSE(model.has_value()) << size;
-    ASSERT_EQ(model.error(),
-              size < sizeof(ModelFileHeader) ? ModelError::kTooShort : ModelError::kWrongSize)
-        << size;
+    ASSERT_EQ(model.error(), size < sizeof(ModelFileHeader) ? ModelError::kTooShort : ModelError::kWrongSize) << size;
   }
 }
 
@@ -107,85 +106,58 @@ struct Corruption {
 const std::vector<Corruption>& Corruptions() {
   static const std::vector<Corruption> all = {
       {"magic", ModelError::kNotAModel, [](Bytes& f) { Header(f).magic = 0; }},
-      {"version", ModelError::kWrongVersion,
-       [](Bytes& f) { Header(f).version = kModelVersion + 1; }},
+      {"version", ModelError::kWrongVersion, [](Bytes& f) { Header(f).version = kModelVersion + 1; }},
       {"empty name", ModelError::kBadName, [](Bytes& f) { Header(f).name[0] = 0; }},
-      {"open name", ModelError::kBadName,
-       [](Bytes& f) { std::memset(Header(f).name, 'a', kMaxModelName); }},
+      {"open name", ModelError::kBadName, [](Bytes& f) { std::memset(Header(f).name, 'a', kMaxModelName); }},
       {"name bytes", ModelError::kBadName, [](Bytes& f) { Header(f).name[1] = '\n'; }},
-      {"misaligned section", ModelError::kBadSection,
-       [](Bytes& f) { Header(f).faces.offset += 4; }},
-      {"section in header", ModelError::kBadSection,
-       [](Bytes& f) { Header(f).vertices.offset = 8; }},
+      {"misaligned section", ModelError::kBadSection, [](Bytes& f) { Header(f).faces.offset += 4; }},
+      {"section in header", ModelError::kBadSection, [](Bytes& f) { Header(f).vertices.offset = 8; }},
       {"section overlap", ModelError::kBadSection,
        [](Bytes& f) {
          Header(f).faces = Header(f).triangles;
          Header(f).faces.count = 6;
        }},
-      {"section outside", ModelError::kBadSection,
-       [](Bytes& f) { Header(f).aspects.offset = 0xFFFFFFF8U; }},
+      {"section outside", ModelError::kBadSection, [](Bytes& f) { Header(f).aspects.offset = 0xFFFFFFF8U; }},
       {"too many vertices", ModelError::kOverCapacity,
        [](Bytes& f) { Header(f).vertices.count = kMaxModelVertices + 1; }},
-      {"too many aspects", ModelError::kOverCapacity,
-       [](Bytes& f) { Header(f).aspects.count = 0xFFFFFFFFU; }},
+      {"too many aspects", ModelError::kOverCapacity, [](Bytes& f) { Header(f).aspects.count = 0xFFFFFFFFU; }},
       {"no edges", ModelError::kEmpty, [](Bytes& f) { Header(f).edges.count = 0; }},
       {"diameter 0", ModelError::kBadDimensions, [](Bytes& f) { Header(f).diameter_m = 0; }},
       {"diameter nan", ModelError::kBadDimensions, [](Bytes& f) { Header(f).diameter_m = kNan; }},
-      {"diameter beyond box", ModelError::kBadDimensions,
-       [](Bytes& f) { Header(f).diameter_m *= 2; }},
-      {"box", ModelError::kBadDimensions,
-       [](Bytes& f) { std::swap(Header(f).box_min_m[1], Header(f).box_max_m[1]); }},
-      {"box infinite", ModelError::kBadDimensions,
-       [](Bytes& f) { Header(f).box_max_m[2] = kInfinity; }},
-      {"vertex nan", ModelError::kBadVertex,
-       [](Bytes& f) { At<ModelVertex>(f, Header(f).vertices, 3).y = kNan; }},
-      {"vertex outside", ModelError::kBadVertex,
-       [](Bytes& f) { At<ModelVertex>(f, Header(f).vertices, 3).y = 9; }},
+      {"diameter beyond box", ModelError::kBadDimensions, [](Bytes& f) { Header(f).diameter_m *= 2; }},
+      {"box", ModelError::kBadDimensions, [](Bytes& f) { std::swap(Header(f).box_min_m[1], Header(f).box_max_m[1]); }},
+      {"box infinite", ModelError::kBadDimensions, [](Bytes& f) { Header(f).box_max_m[2] = kInfinity; }},
+      {"vertex nan", ModelError::kBadVertex, [](Bytes& f) { At<ModelVertex>(f, Header(f).vertices, 3).y = kNan; }},
+      {"vertex outside", ModelError::kBadVertex, [](Bytes& f) { At<ModelVertex>(f, Header(f).vertices, 3).y = 9; }},
       {"triangle vertex", ModelError::kBadTriangle,
        [](Bytes& f) { At<ModelTriangle>(f, Header(f).triangles).vertex[2] = 8; }},
-      {"triangle face", ModelError::kBadTriangle,
-       [](Bytes& f) { At<ModelTriangle>(f, Header(f).triangles).face = 6; }},
+      {"triangle face", ModelError::kBadTriangle, [](Bytes& f) { At<ModelTriangle>(f, Header(f).triangles).face = 6; }},
       {"triangle degenerate", ModelError::kBadTriangle,
        [](Bytes& f) {
          auto& t = At<ModelTriangle>(f, Header(f).triangles);
          t.vertex[0] = t.vertex[1];
        }},
-      {"face normal", ModelError::kBadFace,
-       [](Bytes& f) { At<ModelFace>(f, Header(f).faces).normal[0] += 1; }},
-      {"face normal nan", ModelError::kBadFace,
-       [](Bytes& f) { At<ModelFace>(f, Header(f).faces).normal[1] = kNan; }},
+      {"face normal", ModelError::kBadFace, [](Bytes& f) { At<ModelFace>(f, Header(f).faces).normal[0] += 1; }},
+      {"face normal nan", ModelError::kBadFace, [](Bytes& f) { At<ModelFace>(f, Header(f).faces).normal[1] = kNan; }},
       {"face offset", ModelError::kBadFace,
        [](Bytes& f) { At<ModelFace>(f, Header(f).faces, 5).offset_m = -kInfinity; }},
-      {"face area", ModelError::kBadFace,
-       [](Bytes& f) { At<ModelFace>(f, Header(f).faces, 5).area_m2 = kNan; }},
-      {"face range", ModelError::kBadFace,
-       [](Bytes& f) { At<ModelFace>(f, Header(f).faces, 5).triangle_count = 3; }},
-      {"face start", ModelError::kBadFace,
-       [](Bytes& f) { At<ModelFace>(f, Header(f).faces, 2).first_triangle = 3; }},
+      {"face area", ModelError::kBadFace, [](Bytes& f) { At<ModelFace>(f, Header(f).faces, 5).area_m2 = kNan; }},
+      {"face range", ModelError::kBadFace, [](Bytes& f) { At<ModelFace>(f, Header(f).faces, 5).triangle_count = 3; }},
+      {"face start", ModelError::kBadFace, [](Bytes& f) { At<ModelFace>(f, Header(f).faces, 2).first_triangle = 3; }},
       {"triangle of other face", ModelError::kBadFace,
        [](Bytes& f) { At<ModelTriangle>(f, Header(f).triangles).face = 1; }},
-      {"edge vertex", ModelError::kBadEdge,
-       [](Bytes& f) { At<ModelEdge>(f, Header(f).edges).vertex[0] = 0xFFFF; }},
-      {"edge face", ModelError::kBadEdge,
-       [](Bytes& f) { At<ModelEdge>(f, Header(f).edges).face[1] = 6; }},
-      {"edge first face", ModelError::kBadEdge,
-       [](Bytes& f) { At<ModelEdge>(f, Header(f).edges).face[0] = kNoFace; }},
-      {"edge length", ModelError::kBadEdge,
-       [](Bytes& f) { At<ModelEdge>(f, Header(f).edges).length_m = 0.31F; }},
+      {"edge vertex", ModelError::kBadEdge, [](Bytes& f) { At<ModelEdge>(f, Header(f).edges).vertex[0] = 0xFFFF; }},
+      {"edge face", ModelError::kBadEdge, [](Bytes& f) { At<ModelEdge>(f, Header(f).edges).face[1] = 6; }},
+      {"edge first face", ModelError::kBadEdge, [](Bytes& f) { At<ModelEdge>(f, Header(f).edges).face[0] = kNoFace; }},
+      {"edge length", ModelError::kBadEdge, [](Bytes& f) { At<ModelEdge>(f, Header(f).edges).length_m = 0.31F; }},
       {"edge order", ModelError::kBadEdge,
-       [](Bytes& f) {
-         std::swap(At<ModelEdge>(f, Header(f).edges, 0), At<ModelEdge>(f, Header(f).edges, 11));
-       }},
+       [](Bytes& f) { std::swap(At<ModelEdge>(f, Header(f).edges, 0), At<ModelEdge>(f, Header(f).edges, 11)); }},
       {"edge dihedral", ModelError::kBadEdge,
        [](Bytes& f) { At<ModelEdge>(f, Header(f).edges, 2).dihedral_rad = kNan; }},
-      {"edge convexity", ModelError::kBadEdge,
-       [](Bytes& f) { At<ModelEdge>(f, Header(f).edges, 2).convex = 2; }},
+      {"edge convexity", ModelError::kBadEdge, [](Bytes& f) { At<ModelEdge>(f, Header(f).edges, 2).convex = 2; }},
       {"set kind", ModelError::kBadLineSet,
-       [](Bytes& f) {
-         At<ModelLineSet>(f, Header(f).line_sets).kind = static_cast<LineSetKind>(2);
-       }},
-      {"set base", ModelError::kBadLineSet,
-       [](Bytes& f) { At<ModelLineSet>(f, Header(f).line_sets).base_edge = 12; }},
+       [](Bytes& f) { At<ModelLineSet>(f, Header(f).line_sets).kind = static_cast<LineSetKind>(2); }},
+      {"set base", ModelError::kBadLineSet, [](Bytes& f) { At<ModelLineSet>(f, Header(f).line_sets).base_edge = 12; }},
       {"set range", ModelError::kBadLineSet,
        [](Bytes& f) { At<ModelLineSet>(f, Header(f).line_sets, 23).member_count += 1; }},
       {"set overflow", ModelError::kBadLineSet,

@@ -84,8 +84,7 @@ TEST(RosCovariance, MatchesTheSpreadOfSampledPoses) {
     const Pose moved = PerturbLeft(T, L * white, T.t);
     const Matrix3d dR = moved.R * T.R.transpose();
     Vector6d ros;
-    ros << moved.t - T.t,
-        0.5 * Vector3d(dR(2, 1) - dR(1, 2), dR(0, 2) - dR(2, 0), dR(1, 0) - dR(0, 1));
+    ros << moved.t - T.t, 0.5 * Vector3d(dR(2, 1) - dR(1, 2), dR(0, 2) - dR(2, 0), dR(1, 0) - dR(0, 1));
     sampled += ros * ros.transpose() / kSamples;
   }
   const std::array<double, 36> converted = RosCovariance(covariance);
@@ -162,9 +161,7 @@ TEST_F(MessagesTest, UnambiguousDetectionHasOneResultWithItsPoseAndScore) {
   EXPECT_EQ(result.pose.pose.position.y, in.T_camera_model.t.y());
   EXPECT_EQ(result.pose.pose.position.z, in.T_camera_model.t.z());
   const auto& q = result.pose.pose.orientation;
-  EXPECT_LT(
-      (Turn({q.x, q.y, q.z, q.w}, {1, 2, 3}) - in.T_camera_model.R * Vector3d(1, 2, 3)).norm(),
-      1e-12);
+  EXPECT_LT((Turn({q.x, q.y, q.z, q.w}, {1, 2, 3}) - in.T_camera_model.R * Vector3d(1, 2, 3)).norm(), 1e-12);
   EXPECT_EQ(result.pose.covariance[0], in.covariance(3, 3));
 }
 
@@ -194,9 +191,8 @@ TEST_F(MessagesTest, ModesOfEqualWeightKeepTheirOrder) {
 
 TEST_F(MessagesTest, StampIsTheCaptureTimeAlsoBeforeZero) {
   FrameReport report;
-  for (const auto& [ns, sec, nanosec] :
-       {std::tuple{0LL, 0, 0u}, std::tuple{1'500'000'001LL, 1, 500'000'001u},
-        std::tuple{-1LL, -1, 999'999'999u}, std::tuple{-1'000'000'000LL, -1, 0u}}) {
+  for (const auto& [ns, sec, nanosec] : {std::tuple{0LL, 0, 0u}, std::tuple{1'500'000'001LL, 1, 500'000'001u},
+                                         std::tuple{-1LL, -1, 999'999'999u}, std::tuple{-1'000'000'000LL, -1, 0u}}) {
     report.capture_time = CaptureTime(std::chrono::nanoseconds(ns));
     FillMessage(report, models_, "camera", *detections_);
     EXPECT_EQ(detections_->value.header.stamp.sec, sec);

@@ -54,8 +54,7 @@ TEST(Outbox, ReportBeingWrittenDoesNotTakeRoomInTheQueue) {
   const auto outbox = std::make_unique<Outbox>();
   ASSERT_TRUE(outbox->Offer(Numbered(0)));
   const FrameReport* const writing = outbox->TakeFrame();
-  for (std::uint64_t i = 1; i <= Outbox::kQueueCapacity; ++i)
-    EXPECT_TRUE(outbox->Offer(Numbered(i)));
+  for (std::uint64_t i = 1; i <= Outbox::kQueueCapacity; ++i) EXPECT_TRUE(outbox->Offer(Numbered(i)));
   EXPECT_FALSE(outbox->Offer(Numbered(99)));
   EXPECT_EQ(writing->sequence, 0u) << "overwritten while being written";
   EXPECT_EQ(outbox->high_water(), outbox->capacity());

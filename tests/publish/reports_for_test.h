@@ -42,9 +42,8 @@ inline ModelView MakeModel(std::uint32_t id, std::string_view name) {
 inline FrameReport RandomReport(std::mt19937& random, std::size_t count) {
   FrameReport report;
   report.sequence = random();
-  report.capture_time = CaptureTime(
-      std::chrono::nanoseconds(static_cast<std::int64_t>(random() >> 1) * 1'000'000'000 +
-                               static_cast<int>(random() % 1'000'000'000)));
+  report.capture_time = CaptureTime(std::chrono::nanoseconds(static_cast<std::int64_t>(random() >> 1) * 1'000'000'000 +
+                                                             static_cast<int>(random() % 1'000'000'000)));
   for (std::size_t i = 0; i < count; ++i) {
     Detection detection;
     detection.model_id = 7;

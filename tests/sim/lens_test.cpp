@@ -9,15 +9,12 @@ namespace wirepose::sim {
 namespace {
 
 CameraIntrinsics AnyIntrinsics(Random& random) {
-  return {
-      random.Uniform(300, 900),      random.Uniform(300, 900),      random.Uniform(300, 340),
-      random.Uniform(220, 260),      random.Uniform(-0.12, 0.05),   random.Uniform(-0.01, 0.03),
-      random.Uniform(-0.001, 0.001), random.Uniform(-0.001, 0.001), random.Uniform(-0.005, 0.005)};
+  return {random.Uniform(300, 900),      random.Uniform(300, 900),      random.Uniform(300, 340),
+          random.Uniform(220, 260),      random.Uniform(-0.12, 0.05),   random.Uniform(-0.01, 0.03),
+          random.Uniform(-0.001, 0.001), random.Uniform(-0.001, 0.001), random.Uniform(-0.005, 0.005)};
 }
 
-Vector2d AnyDirection(Random& random) {
-  return {random.Uniform(-0.6, 0.6), random.Uniform(-0.5, 0.5)};
-}
+Vector2d AnyDirection(Random& random) { return {random.Uniform(-0.6, 0.6), random.Uniform(-0.5, 0.5)}; }
 
 TEST(Lens, AgreesWithOpenCv) {
   Random random(1);
@@ -50,8 +47,7 @@ TEST(Lens, DerivativeAgreesWithDifferences) {
     ASSERT_TRUE(ray);
     for (int axis = 0; axis < 2; ++axis) {
       const Vector2d step = kStep * Vector2d::Unit(axis);
-      const Vector2d difference =
-          (lens.RayOf(pixel + step)->xy - lens.RayOf(pixel - step)->xy) / (2 * kStep);
+      const Vector2d difference = (lens.RayOf(pixel + step)->xy - lens.RayOf(pixel - step)->xy) / (2 * kStep);
       EXPECT_LT((ray->dxy_dpixel.col(axis) - difference).norm(), 1e-8);
     }
   }

@@ -10,8 +10,7 @@
 namespace wirepose::sim::test {
 
 // Where the camera sees points of its own frame.
-inline std::vector<Eigen::Vector2d> ProjectWithOpenCv(const CameraIntrinsics& c,
-                                                      const std::vector<Vector3d>& points) {
+inline std::vector<Eigen::Vector2d> ProjectWithOpenCv(const CameraIntrinsics& c, const std::vector<Vector3d>& points) {
   const cv::Matx33d K(c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
   const std::vector<double> D{c.k1, c.k2, c.p1, c.p2, c.k3};
   std::vector<cv::Point3d> in;

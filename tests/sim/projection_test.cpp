@@ -120,8 +120,7 @@ struct Case {
 Case AnyCase(Random& random) {
   Case c;
   c.T_camera_object.R = test::AnyRotation(random);
-  c.T_camera_object.t =
-      Vector3d(random.Uniform(-0.15, 0.15), random.Uniform(-0.08, 0.08), random.Uniform(0.9, 1.3));
+  c.T_camera_object.t = Vector3d(random.Uniform(-0.15, 0.15), random.Uniform(-0.08, 0.08), random.Uniform(0.9, 1.3));
   return c;
 }
 

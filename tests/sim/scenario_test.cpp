@@ -31,8 +31,7 @@ bool OverlapByPoints(const Footprint& a, const Footprint& b) {
   constexpr int kSteps = 40;
   for (int i = 0; i <= kSteps; ++i) {
     for (int j = 0; j <= kSteps; ++j) {
-      const Vector2d local((2.0 * i / kSteps - 1) * a.half.x(),
-                           (2.0 * j / kSteps - 1) * a.half.y());
+      const Vector2d local((2.0 * i / kSteps - 1) * a.half.x(), (2.0 * j / kSteps - 1) * a.half.y());
       if (Contains(b, a.centre + Eigen::Rotation2Dd(a.yaw_rad) * local)) return true;
     }
   }

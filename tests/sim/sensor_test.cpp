@@ -8,9 +8,7 @@ namespace wirepose::sim {
 namespace {
 
 RadianceImage Even(float level, int side = 300) {
-  return {
-      side, side,
-      std::vector<float>(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), level)};
+  return {side, side, std::vector<float>(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), level)};
 }
 
 struct Moments {

@@ -57,9 +57,8 @@ TEST(Stereo, RightImageIsWhereDepthAndCalibrationSay) {
   const StereoCalibration calibration = test::SmallCalibration(0.5);
   Scene scene;
   scene.meshes = {MakeBox({4.0F, 4.0F, 0.01F})};
-  Instance plane =
-      test::Glowing(0, {Eigen::AngleAxisd(0.5, Vector3d(1, 1, 0).normalized()).toRotationMatrix(),
-                        Vector3d(0, 0, 1.1)});
+  Instance plane = test::Glowing(
+      0, {Eigen::AngleAxisd(0.5, Vector3d(1, 1, 0).normalized()).toRotationMatrix(), Vector3d(0, 0, 1.1)});
   plane.material.texture = Texture::kStone;
   plane.material.scale_m = 0.2F;
   plane.material.albedo = 0.5F;
@@ -85,9 +84,8 @@ TEST(Stereo, RightImageIsWhereDepthAndCalibrationSay) {
         const int u = static_cast<int>(std::floor(q.x())), v = static_cast<int>(std::floor(q.y()));
         if (u < 0 || v < 0 || u + 1 >= calibration.width || v + 1 >= calibration.height) continue;
         const double a = q.x() - u, b = q.y() - v;
-        const double seen =
-            (1 - b) * ((1 - a) * double{right(u, v)} + a * double{right(u + 1, v)}) +
-            b * ((1 - a) * double{right(u, v + 1)} + a * double{right(u + 1, v + 1)});
+        const double seen = (1 - b) * ((1 - a) * double{right(u, v)} + a * double{right(u + 1, v)}) +
+                            b * ((1 - a) * double{right(u, v + 1)} + a * double{right(u + 1, v + 1)});
         sum += std::abs(seen - double{left(x, y)});
         ++count;
       }
@@ -97,8 +95,7 @@ TEST(Stereo, RightImageIsWhereDepthAndCalibrationSay) {
   };
   const double exact = mismatch({0, 0});
   EXPECT_LT(exact, 0.01);
-  for (const Vector2d& shift :
-       {Vector2d(0.5, 0), Vector2d(-0.5, 0), Vector2d(0, 0.5), Vector2d(0, -0.5)}) {
+  for (const Vector2d& shift : {Vector2d(0.5, 0), Vector2d(-0.5, 0), Vector2d(0, 0.5), Vector2d(0, -0.5)}) {
     EXPECT_GT(mismatch(shift), 1.1 * exact);
   }
 }

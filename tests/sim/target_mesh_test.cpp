@@ -15,16 +15,13 @@ class TargetMeshTest : public testing::Test {
  protected:
   void SetUp() override {
     root_ = fs::path(testing::TempDir()) /
-            ("target_mesh_" +
-             std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+            ("target_mesh_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(root_);
     fs::create_directories(root_ / "models");
   }
   void TearDown() override { fs::remove_all(root_); }
 
-  void Write(const std::string& name, const std::string& text) const {
-    std::ofstream(root_ / "models" / name) << text;
-  }
+  void Write(const std::string& name, const std::string& text) const { std::ofstream(root_ / "models" / name) << text; }
 
   fs::path root_;
 };

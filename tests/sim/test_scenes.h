@@ -25,9 +25,7 @@ inline StereoCalibration SmallCalibration(double scale = 0.25) {
   return c;
 }
 
-inline Camera LeftOf(const StereoCalibration& c) {
-  return {c.left, c.width, c.height, Pose{}, 0.5};
-}
+inline Camera LeftOf(const StereoCalibration& c) { return {c.left, c.width, c.height, Pose{}, 0.5}; }
 
 // Any rotation, evenly enough.
 inline Matrix3d AnyRotation(Random& random) {
@@ -55,8 +53,7 @@ inline Scene GlowingBox(const Vector3& size, const Pose& T_world_object) {
 }
 
 inline std::vector<TargetMesh> BoxAndBook() {
-  return {{1, "parcel_box", {}, MakeBox({0.3F, 0.2F, 0.15F})},
-          {2, "book", {}, MakeBox({0.24F, 0.165F, 0.035F})}};
+  return {{1, "parcel_box", {}, MakeBox({0.3F, 0.2F, 0.15F})}, {2, "book", {}, MakeBox({0.24F, 0.165F, 0.035F})}};
 }
 
 }  // namespace wirepose::sim::test

@@ -21,8 +21,8 @@ Vector3 AnyPoint(Random& random) {
 
 TEST(Texture, AlbedoStaysInRangeAndIsAFunctionOfThePlace) {
   Random random(31);
-  for (const Texture texture : {Texture::kPlain, Texture::kWood, Texture::kStone, Texture::kTiles,
-                                Texture::kPanels, Texture::kChecker, Texture::kLabel}) {
+  for (const Texture texture : {Texture::kPlain, Texture::kWood, Texture::kStone, Texture::kTiles, Texture::kPanels,
+                                Texture::kChecker, Texture::kLabel}) {
     for (const Mapping mapping : {Mapping::kBox, Mapping::kCylinder}) {
       for (std::uint32_t seed = 0; seed < 8; ++seed) {
         const Material material{texture, mapping, 0.9F, 0.1F, 0.03F, 0.1F, seed};
@@ -43,8 +43,8 @@ TEST(Texture, CheckerAlternates) {
   const Material material{Texture::kChecker, Mapping::kBox, 0.8F, 0.2F, 0.05F, 0, 0};
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 4; ++j) {
-      const Vector3 p(-0.15F + 0.05F * (static_cast<float>(i) + 0.5F),
-                      -0.1F + 0.05F * (static_cast<float>(j) + 0.5F), 0.075F);
+      const Vector3 p(-0.15F + 0.05F * (static_cast<float>(i) + 0.5F), -0.1F + 0.05F * (static_cast<float>(j) + 0.5F),
+                      0.075F);
       EXPECT_EQ(AlbedoAt(material, kBounds, p, Vector3::UnitZ()), (i + j) % 2 == 0 ? 0.8F : 0.2F);
     }
   }

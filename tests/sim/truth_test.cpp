@@ -14,8 +14,7 @@ namespace {
 
 // The honest oracle: every triangle in double precision (Moeller and Trumbore 1997). Returns the
 // ray parameter or infinity.
-double Cast(const Scene& scene, std::size_t instance, const Vector3d& origin,
-            const Vector3d& direction) {
+double Cast(const Scene& scene, std::size_t instance, const Vector3d& origin, const Vector3d& direction) {
   double nearest = std::numeric_limits<double>::infinity();
   const Instance& object = scene.instances[instance];
   const Mesh& mesh = scene.meshes[static_cast<std::size_t>(object.mesh)];
@@ -26,8 +25,7 @@ double Cast(const Scene& scene, std::size_t instance, const Vector3d& origin,
     Matrix3d M;
     M << direction, a - b, a - c;
     const Vector3d solution = M.fullPivLu().solve(a - origin);  // t, beta, gamma
-    const bool is_inside =
-        solution[1] >= 0 && solution[2] >= 0 && solution[1] + solution[2] <= 1 && solution[0] > 0;
+    const bool is_inside = solution[1] >= 0 && solution[2] >= 0 && solution[1] + solution[2] <= 1 && solution[0] > 0;
     if (is_inside) nearest = std::min(nearest, solution[0]);
   }
   return nearest;

@@ -15,8 +15,7 @@ namespace {
 class ConfigTest : public ::testing::Test {
  protected:
   ConfigTest()
-      : file_(std::filesystem::temp_directory_path() /
-              ("wirepose_config_" + std::to_string(getpid()) + ".yaml")) {}
+      : file_(std::filesystem::temp_directory_path() / ("wirepose_config_" + std::to_string(getpid()) + ".yaml")) {}
   ~ConfigTest() override { std::filesystem::remove(file_); }
 
   Config Load(const std::string& text) const {
@@ -89,17 +88,13 @@ TEST_F(ConfigTest, RefusalsNameLineKeyAndRemedy) {
   EXPECT_EQ(Refusal("a: 1\n"), ":1: a: unknown key; known here: camera, dds, models, search_for");
   EXPECT_EQ(Refusal("dds:\n  domain: 5\n  domian: 6\n"),
             ":3: dds.domian: unknown key; known here: domain, frame_id, loopback");
-  EXPECT_EQ(Refusal("dds:\n  domain: 231\n"),
-            ":2: dds.domain: '231' is not a whole number from 0 to 230");
-  EXPECT_EQ(Refusal("dds:\n  domain: -1\n"),
-            ":2: dds.domain: '-1' is not a whole number from 0 to 230");
-  EXPECT_EQ(Refusal("dds:\n  domain: 1x\n"),
-            ":2: dds.domain: '1x' is not a whole number from 0 to 230");
+  EXPECT_EQ(Refusal("dds:\n  domain: 231\n"), ":2: dds.domain: '231' is not a whole number from 0 to 230");
+  EXPECT_EQ(Refusal("dds:\n  domain: -1\n"), ":2: dds.domain: '-1' is not a whole number from 0 to 230");
+  EXPECT_EQ(Refusal("dds:\n  domain: 1x\n"), ":2: dds.domain: '1x' is not a whole number from 0 to 230");
   EXPECT_EQ(Refusal("dds:\n  domain: [1]\n"), ":2: dds.domain: needs a whole number");
   EXPECT_EQ(Refusal("\n\ndds:\n  loopback: maybe\n"),
             ":4: dds.loopback: 'maybe' is not a truth value; write true or false");
-  EXPECT_EQ(Refusal("dds: { domain: 1, domain: 2 }\n"),
-            ":1: dds.domain: stands here twice; remove one");
+  EXPECT_EQ(Refusal("dds: { domain: 1, domain: 2 }\n"), ":1: dds.domain: stands here twice; remove one");
   EXPECT_EQ(Refusal("dds: 7\n"), ":1: dds: not a mapping; write 'key: value' lines");
   EXPECT_EQ(Refusal("models: a.wpm\n"), ":1: models: needs a list of paths, as [a, b]");
   EXPECT_EQ(Refusal("search_for: [one]\n"), ":1: search_for: not a model id; write whole numbers");
@@ -108,8 +103,7 @@ TEST_F(ConfigTest, RefusalsNameLineKeyAndRemedy) {
   EXPECT_EQ(Refusal("camera: { timeout_ms: 70000 }\n"),
             ":1: camera.timeout_ms: '70000' is not a whole number from 10 to 60000");
   EXPECT_NE(Refusal("camera: { backend: kodak }\n").find("no camera 'kodak'"), std::string::npos);
-  EXPECT_NE(Refusal("dds: { frame_id: " + std::string(64, 'x') + " }").find("longer than 63"),
-            std::string::npos);
+  EXPECT_NE(Refusal("dds: { frame_id: " + std::string(64, 'x') + " }").find("longer than 63"), std::string::npos);
 }
 
 TEST_F(ConfigTest, WhatIsNotYamlIsRefusedWithItsLine) {

@@ -99,11 +99,9 @@ TEST(HealthMonitor, KeepsHighWaterAndSumOfDrops) {
   health.FrameDone(statistics);
   EXPECT_EQ(health.Report(kStart).lists.lines.used, 80u);
   EXPECT_EQ(health.Report(kStart).lists.lines.capacity, 256u);
-  EXPECT_EQ(health.Report(kStart).lists.lines.dropped,
-            std::numeric_limits<std::uint32_t>::max() - 2);
+  EXPECT_EQ(health.Report(kStart).lists.lines.dropped, std::numeric_limits<std::uint32_t>::max() - 2);
   health.FrameDone(statistics);
-  EXPECT_EQ(health.Report(kStart).lists.lines.dropped, std::numeric_limits<std::uint32_t>::max())
-      << "wrapped";
+  EXPECT_EQ(health.Report(kStart).lists.lines.dropped, std::numeric_limits<std::uint32_t>::max()) << "wrapped";
 }
 
 }  // namespace

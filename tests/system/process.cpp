@@ -29,8 +29,7 @@ std::vector<char*> Pointers(std::vector<std::string>& texts) {
 
 }  // namespace
 
-Process::Process(const std::filesystem::path& folder, const std::string& name,
-                 const std::vector<std::string>& command,
+Process::Process(const std::filesystem::path& folder, const std::string& name, const std::vector<std::string>& command,
                  const std::vector<std::string>& environment)
     : out_(folder / (name + ".out")), err_(folder / (name + ".err")) {
   std::vector<std::string> arguments = command;
@@ -41,8 +40,8 @@ Process::Process(const std::filesystem::path& folder, const std::string& name,
   constexpr int kCreate = O_WRONLY | O_CREAT | O_TRUNC;
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_.c_str(), kCreate, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kCreate, 0600);
-  const int error = posix_spawn(&pid_, command.at(0).c_str(), &actions, nullptr,
-                                Pointers(arguments).data(), Pointers(variables).data());
+  const int error = posix_spawn(&pid_, command.at(0).c_str(), &actions, nullptr, Pointers(arguments).data(),
+                                Pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw std::runtime_error("cannot start " + command[0]);
 }

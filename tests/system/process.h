@@ -17,8 +17,7 @@ namespace wirepose::test {
 class Process {
  public:
   // `environment`: "NAME=value" lines added to this process's.
-  Process(const std::filesystem::path& folder, const std::string& name,
-          const std::vector<std::string>& command,
+  Process(const std::filesystem::path& folder, const std::string& name, const std::vector<std::string>& command,
           const std::vector<std::string>& environment = {});
   ~Process();
   Process(const Process&) = delete;

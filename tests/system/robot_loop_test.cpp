@@ -113,8 +113,7 @@ class RobotLoopTest : public ::testing::Test {
     while (!done) {
       while (dds_take(reader, samples, &info, 1, 1) > 0) {
         if (!info.valid_data) continue;
-        if (states_.empty() || states_.back() != message->value.state)
-          states_.push_back(message->value.state);
+        if (states_.empty() || states_.back() != message->value.state) states_.push_back(message->value.state);
         good_ = message->value.frames.good;
         damaged_ = message->value.frames.damaged;
       }
@@ -134,19 +133,16 @@ class RobotLoopTest : public ::testing::Test {
 };
 
 TEST_F(RobotLoopTest, GoesOnThroughEveryKindOfTrouble) {
-  Run({FrameStatus::kGood, CameraError::kTimeout, FrameStatus::kGood, FrameStatus::kImageDamaged,
-       FrameStatus::kGood, CameraError::kDisconnected, CameraError::kDisconnected,
-       FrameStatus::kGood});
+  Run({FrameStatus::kGood, CameraError::kTimeout, FrameStatus::kGood, FrameStatus::kImageDamaged, FrameStatus::kGood,
+       CameraError::kDisconnected, CameraError::kDisconnected, FrameStatus::kGood});
   EXPECT_EQ(failure_, "");
   EXPECT_EQ(frames_, 5u);
   EXPECT_EQ(good_, 4u);
   EXPECT_EQ(damaged_, 1u);
   ASSERT_FALSE(states_.empty());
-  if (states_.front() == wirepose_STARTING)
-    states_.erase(states_.begin());  // may precede the match
-  EXPECT_EQ(states_, (std::vector{wirepose_RUNNING, wirepose_NO_FRAMES, wirepose_RUNNING,
-                                  wirepose_BAD_FRAMES, wirepose_RUNNING, wirepose_CAMERA_LOST,
-                                  wirepose_RUNNING, wirepose_STOPPED}));
+  if (states_.front() == wirepose_STARTING) states_.erase(states_.begin());  // may precede the match
+  EXPECT_EQ(states_, (std::vector{wirepose_RUNNING, wirepose_NO_FRAMES, wirepose_RUNNING, wirepose_BAD_FRAMES,
+                                  wirepose_RUNNING, wirepose_CAMERA_LOST, wirepose_RUNNING, wirepose_STOPPED}));
   EXPECT_EQ(camera_->leased, 0);
 }
 

@@ -35,8 +35,7 @@ class RobotTest : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("wirepose_" + std::to_string(getpid()) + "_" + info->name());
+    folder_ = std::filesystem::temp_directory_path() / ("wirepose_" + std::to_string(getpid()) + "_" + info->name());
     std::filesystem::create_directories(folder_);
     Process build(folder_, "build",
                   {WIREPOSE_PROGRAM, "model", "build", WIREPOSE_MESH, "--id", "1", "--out",
@@ -52,8 +51,7 @@ class RobotTest : public ::testing::Test {
     for (int i = 0; i < count; ++i) {
       std::vector<std::uint8_t> pixels(std::size_t{kWidth} * kHeight, 40);
       for (int y = 30; y < 80; ++y) {
-        for (int x = 40 + i; x < 100 + i; ++x)
-          pixels[static_cast<std::size_t>(y * kWidth + x)] = 200;
+        for (int x = 40 + i; x < 100 + i; ++x) pixels[static_cast<std::size_t>(y * kWidth + x)] = 200;
       }
       const ImageView image{pixels.data(), kWidth, kHeight, kWidth};
       dataset::FrameRecord record;
@@ -94,8 +92,7 @@ class RobotTest : public ::testing::Test {
   }
 
   [[nodiscard]] std::vector<std::string> Watch(const std::vector<std::string>& more) const {
-    std::vector<std::string> command = {WIREPOSE_PROGRAM, "watch", "--json",
-                                        "--domain",       domain_, "--loopback"};
+    std::vector<std::string> command = {WIREPOSE_PROGRAM, "watch", "--json", "--domain", domain_, "--loopback"};
     command.insert(command.end(), more.begin(), more.end());
     return command;
   }

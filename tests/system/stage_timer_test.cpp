@@ -12,9 +12,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-StageTimer::Clock::time_point At(std::int64_t ns) {
-  return StageTimer::Clock::time_point(nanoseconds(ns));
-}
+StageTimer::Clock::time_point At(std::int64_t ns) { return StageTimer::Clock::time_point(nanoseconds(ns)); }
 
 TEST(StageTimer, NoFrameNoTimes) { EXPECT_TRUE(StageTimer().Summary().empty()); }
 
@@ -32,6 +30,24 @@ TEST(StageTimer, StagesThatDidNotRunAreLeftOut) {
   EXPECT_EQ(times[1].max_ns, 1u);
   EXPECT_TRUE(times[2].stage == "frame");
   EXPECT_EQ(times[2].max_ns, 50u);
+}
+
+// The stages after the line sets run once for each model.
+TEST(StageTimer, RunsOfOneFrameAddUp) {
+  StageTimer timer;
+  for (const std::int64_t begin : {1000, 2000}) {
+    timer.FrameBegins(At(begin));
+    for (const std::int64_t model : {0, 100, 200}) {
+      timer.StageDoneAt(Stage::kHypotheses, At(begin + model + 70));
+      timer.StageDoneAt(Stage::kVerify, At(begin + model + 100));
+    }
+    timer.FrameEnds(At(begin + 300));
+  }
+  const StageTimes times = timer.Summary();
+  ASSERT_EQ(times.size(), 3u);
+  EXPECT_EQ(times[0].max_ns, 3 * 70u);
+  EXPECT_EQ(times[1].max_ns, 3 * 30u);
+  EXPECT_EQ(times[2].max_ns, 300u);
 }
 
 TEST(StageTimer, AStageOfNoTimeStillRan) {

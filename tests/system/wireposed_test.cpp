@@ -38,8 +38,7 @@ TEST_F(WireposedTest, SubscriberInAnotherProcessGetsEveryTopic) {
   const std::vector<Json> recognition = Messages(both, "recognition");
   ASSERT_EQ(recognition.size(), 5u);
   for (std::size_t i = 1; i < 5; ++i) {
-    EXPECT_EQ(recognition[i]["frame_sequence"],
-              recognition[i - 1]["frame_sequence"].get<int>() + 1);
+    EXPECT_EQ(recognition[i]["frame_sequence"], recognition[i - 1]["frame_sequence"].get<int>() + 1);
     EXPECT_EQ(recognition[i]["capture_time_ns"],
               recognition[i - 1]["capture_time_ns"].get<std::int64_t>() + 40'000'000);
     EXPECT_EQ(recognition[i]["frame_id"], "test_optical");
@@ -177,8 +176,7 @@ TEST_F(WireposedTest, TellsSystemdReadyAliveAndStopping) {
 class RefusalTest : public RobotTest {
  protected:
   // Expects one line on stderr that holds every text of `parts`, and the exit status.
-  void Expect(const std::vector<std::string>& command, int status,
-              const std::vector<std::string>& parts) const {
+  void Expect(const std::vector<std::string>& command, int status, const std::vector<std::string>& parts) const {
     Process robot(folder_, "robot", command);
     ASSERT_EQ(robot.Wait(), status) << robot.Err();
     const std::string err = robot.Err();
@@ -243,8 +241,7 @@ TEST_F(RefusalTest, UnknownModelId) {
 }
 
 TEST_F(RefusalTest, WatchWithoutARobot) {
-  Expect(Watch({"--once", "--timeout", "0.5"}), 1,
-         {"nothing arrived for 0.5 s", "domain " + domain_});
+  Expect(Watch({"--once", "--timeout", "0.5"}), 1, {"nothing arrived for 0.5 s", "domain " + domain_});
   Expect(Watch({"--topic", "weather"}), 2, {"weather"});
   Expect(Watch({"--domain", "500"}), 2, {"500"});
 }

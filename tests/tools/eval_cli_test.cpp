@@ -41,8 +41,7 @@ dataset::GrayImage Noise(int width, int height, unsigned seed) {
   dataset::GrayImage image;
   image.width = width;
   image.height = height;
-  for (int i = 0; i < width * height; ++i)
-    image.pixels.push_back(static_cast<std::uint8_t>(random()));
+  for (int i = 0; i < width * height; ++i) image.pixels.push_back(static_cast<std::uint8_t>(random()));
   return image;
 }
 
@@ -88,11 +87,10 @@ std::string TextOf(const fs::path& file) {
 }
 
 Outcome Wirepose(const fs::path& scratch, const std::string& arguments) {
-  const std::string command = fmt::format("cd '{0}' && '{1}' {2} >out.txt 2>err.txt",
-                                          scratch.string(), WIREPOSE_PROGRAM, arguments);
+  const std::string command =
+      fmt::format("cd '{0}' && '{1}' {2} >out.txt 2>err.txt", scratch.string(), WIREPOSE_PROGRAM, arguments);
   const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, TextOf(scratch / "out.txt"),
-          TextOf(scratch / "err.txt")};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, TextOf(scratch / "out.txt"), TextOf(scratch / "err.txt")};
 }
 
 TEST(EvalCommand, WritesRowsJsonAndTable) {
@@ -127,10 +125,7 @@ TEST(EvalCommand, LimitsFramesAndTruthTogether) {
 TEST(EvalCommand, ReadsModelFiles) {
   TemporaryFolder folder;
   WriteDataset(folder.path() / "set");
-  ASSERT_EQ(Wirepose(folder.path(),
-                     "model build set/models/obj_000001.ply --id 1 --name box --out box.wpm")
-                .status,
-            0);
+  ASSERT_EQ(Wirepose(folder.path(), "model build set/models/obj_000001.ply --id 1 --name box --out box.wpm").status, 0);
   const Outcome run = Wirepose(folder.path(), "eval set --models box.wpm --out r.csv");
   EXPECT_EQ(run.status, 0) << run.err;
 }
@@ -186,8 +181,7 @@ std::function<void(const fs::path&)> Put(const std::string& file, const std::str
 }
 
 // Replaces the first occurrence in a file that must have it.
-std::function<void(const fs::path&)> Edit(const std::string& file, const std::string& from,
-                                          const std::string& to) {
+std::function<void(const fs::path&)> Edit(const std::string& file, const std::string& from, const std::string& to) {
   return [=](const fs::path& root) {
     std::string text = TextOf(root / file);
     const auto at = text.find(from);
@@ -197,14 +191,13 @@ std::function<void(const fs::path&)> Edit(const std::string& file, const std::st
 }
 
 void PutSmallerImage(const fs::path& root) {
-  ASSERT_TRUE(
-      dataset::WriteGrayPng(root / "test/000001/gray_cam2/000001.png", Noise(80, 60, 3).view()));
+  ASSERT_TRUE(dataset::WriteGrayPng(root / "test/000001/gray_cam2/000001.png", Noise(80, 60, 3).view()));
 }
 
 void PutDeepImage(const fs::path& root) {
   const std::vector<std::uint16_t> pixels(kWidth * kHeight, 5000);
-  ASSERT_TRUE(dataset::WriteDepthPng(root / "test/000001/gray_cam1/000000.png",
-                                     {pixels.data(), kWidth, kHeight, kWidth}));
+  ASSERT_TRUE(
+      dataset::WriteDepthPng(root / "test/000001/gray_cam1/000000.png", {pixels.data(), kWidth, kHeight, kWidth}));
 }
 
 void Nothing(const fs::path&) {}
@@ -222,34 +215,26 @@ const BadInput kBadInputs[] = {
     {"NegativeLimit", Nothing, kEval + " --limit -1", 2, "--limit"},
     {"CalibrationMissing", Remove("calib.yaml"), kEval, 1, "calib.yaml"},
     {"CalibrationEmpty", Put("calib.yaml", ""), kEval, 1, "calib.yaml"},
-    {"CalibrationNotYaml", Put("calib.yaml", "%YAML:1.0\n---\nK1: [1, 2\n"), kEval, 1,
-     "calib.yaml"},
+    {"CalibrationNotYaml", Put("calib.yaml", "%YAML:1.0\n---\nK1: [1, 2\n"), kEval, 1, "calib.yaml"},
     {"CalibrationWithoutT", Edit("calib.yaml", "\nT:", "\nS:"), kEval, 1, "calib.yaml"},
-    {"CalibrationTooLarge", Edit("calib.yaml", "image_width: 160", "image_width: 1600"), kEval, 1,
-     "calib.yaml"},
+    {"CalibrationTooLarge", Edit("calib.yaml", "image_width: 160", "image_width: 1600"), kEval, 1, "calib.yaml"},
     {"ImageMissing", Remove(kLeft0), kEval, 1, "000000.png"},
     {"ImageEmpty", Put(kLeft0, ""), kEval, 1, "000000.png"},
     {"ImageNotPng", Put(kLeft0, "GIF89a and so on"), kEval, 1, "000000.png"},
-    {"ImageOfWrongSize", PutSmallerImage, kEval, 1,
-     "000001.png: 80x60 pixels, but calib.yaml says 160x120"},
+    {"ImageOfWrongSize", PutSmallerImage, kEval, 1, "000001.png: 80x60 pixels, but calib.yaml says 160x120"},
     {"ImageOfWrongDepth", PutDeepImage, kEval, 1, "000000.png"},
     {"NoScenes", Remove("test/000001"), kEval, 1, "test"},
     {"NoTestFolder", Remove("test"), kEval, 1, "test"},
-    {"CameraMissing", Remove("test/000001/scene_camera_cam1.json"), kEval, 1,
-     "scene_camera_cam1.json"},
+    {"CameraMissing", Remove("test/000001/scene_camera_cam1.json"), kEval, 1, "scene_camera_cam1.json"},
     {"TruthMissing", Remove("test/000001/scene_gt_cam1.json"), kEval, 1, "scene_gt_cam1.json"},
-    {"TruthNotJson", Put("test/000001/scene_gt_cam1.json", "{\"0\": ["), kEval, 1,
-     "scene_gt_cam1.json"},
-    {"TruthOfUnknownModel",
-     Edit("test/000001/scene_gt_cam1.json", "\"obj_id\": 1", "\"obj_id\": 8"), kEval, 1,
+    {"TruthNotJson", Put("test/000001/scene_gt_cam1.json", "{\"0\": ["), kEval, 1, "scene_gt_cam1.json"},
+    {"TruthOfUnknownModel", Edit("test/000001/scene_gt_cam1.json", "\"obj_id\": 1", "\"obj_id\": 8"), kEval, 1,
      "unknown model id 8"},
     {"NoModels", Remove("models/obj_000001.ply"), kEval, 1, "obj_000001.ply"},
     {"NoModelsInfo", Remove("models/models_info.json"), kEval, 1, "models_info.json"},
-    {"MeshMalformed", Put("models/obj_000001.ply", "ply\nformat ascii 1.0\n"), kEval, 1,
-     "obj_000001.ply"},
+    {"MeshMalformed", Put("models/obj_000001.ply", "ply\nformat ascii 1.0\n"), kEval, 1, "obj_000001.ply"},
     {"ModelFileMissing", Nothing, kEval + " --models none.wpm", 1, "none.wpm"},
-    {"ModelFileMalformed", Put("bad.wpm", "WPM1 or so"), kEval + " --models set/bad.wpm", 1,
-     "bad.wpm"},
+    {"ModelFileMalformed", Put("bad.wpm", "WPM1 or so"), kEval + " --models set/bad.wpm", 1, "bad.wpm"},
     {"ModelFolderEmpty", Nothing, kEval + " --models set/test", 1, "no models"},
     {"UnknownModelId", Nothing, kEval + " --objects 1,5", 1, "unknown model id 5"},
     {"OverlayOnAFile", Nothing, kEval + " --overlay set/calib.yaml", 1, "calib.yaml"},
@@ -261,10 +246,7 @@ INSTANTIATE_TEST_SUITE_P(EvalCommand, BadInputTest, ::testing::ValuesIn(kBadInpu
 TEST(EvalCommand, RefusesAModelTheDataSetDoesNotKnow) {
   TemporaryFolder folder;
   WriteDataset(folder.path() / "set");
-  ASSERT_EQ(Wirepose(folder.path(),
-                     "model build set/models/obj_000001.ply --id 6 --name box --out box.wpm")
-                .status,
-            0);
+  ASSERT_EQ(Wirepose(folder.path(), "model build set/models/obj_000001.ply --id 6 --name box --out box.wpm").status, 0);
   const Outcome run = Wirepose(folder.path(), "eval set --models box.wpm --out r.csv");
   EXPECT_EQ(run.status, 1);
   EXPECT_THAT(run.err, HasSubstr("unknown model id 6"));

@@ -101,8 +101,7 @@ void WriteModels(const fs::path& models, std::mt19937& random) {
   WriteText(models / "obj_000002.ply", BinaryPly(lump));
   WriteText(models / "obj_000005.ply", AsciiPly(cone));
   Json info;
-  info["1"] = {{"diameter", Diameter(cuboid)},
-               {"symmetries_discrete", {Turn(0), Turn(1), Turn(2)}}};
+  info["1"] = {{"diameter", Diameter(cuboid)}, {"symmetries_discrete", {Turn(0), Turn(1), Turn(2)}}};
   info["2"] = {{"diameter", Diameter(lump)}};
   info["5"] = {{"diameter", Diameter(cone)},
                {"symmetries_continuous", {{{"axis", {0, 0, 2}}, {"offset", {20, -10, 0}}}}}};
@@ -119,11 +118,9 @@ void WriteScene(const fs::path& scene, bool with_info, std::mt19937& random) {
     const int count = static_cast<int>(random() % 5);
     for (int i = 0; i < count; ++i) {
       const int ids[] = {1, 1, 2, 5};
-      const Vector3d t{Uniform(random, -300, 300), Uniform(random, -200, 200),
-                       Uniform(random, 500, 1500)};
-      gt[key].push_back({{"obj_id", ids[random() % 4]},
-                         {"cam_R_m2c", Flat(RandomRotation(random))},
-                         {"cam_t_m2c", Flat(t)}});
+      const Vector3d t{Uniform(random, -300, 300), Uniform(random, -200, 200), Uniform(random, 500, 1500)};
+      gt[key].push_back(
+          {{"obj_id", ids[random() % 4]}, {"cam_R_m2c", Flat(RandomRotation(random))}, {"cam_t_m2c", Flat(t)}});
       info[key].push_back({{"visib_fract", Uniform(random, 0.2, 1)}});
     }
   }
@@ -133,8 +130,7 @@ void WriteScene(const fs::path& scene, bool with_info, std::mt19937& random) {
 }
 
 Vector3d RandomVector(std::mt19937& random, double range) {
-  return {Uniform(random, -range, range), Uniform(random, -range, range),
-          Uniform(random, -range, range)};
+  return {Uniform(random, -range, range), Uniform(random, -range, range), Uniform(random, -range, range)};
 }
 
 RigidMm Perturb(const RigidMm& T, std::mt19937& random, double shift_mm, double turn_rad) {
@@ -159,9 +155,7 @@ void WriteText(const fs::path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary) << text;
 }
 
-Matrix3d RandomRotation(std::mt19937& random) {
-  return Orthonormalize(ExpSo3(RandomVector(random, 3)));
-}
+Matrix3d RandomRotation(std::mt19937& random) { return Orthonormalize(ExpSo3(RandomVector(random, 3))); }
 
 void WriteRandomDataset(const fs::path& root, std::mt19937& random) {
   WriteModels(root / "models", random);
@@ -187,8 +181,7 @@ std::vector<Estimate> RandomEstimates(const GroundTruth& truth, std::mt19937& ra
       const auto& symmetries = truth.objects.at(instance.object_id).symmetries;
       const int copies = static_cast<int>(random() % 4);
       for (int i = 0; i < copies; ++i) {
-        const RigidMm symmetric =
-            instance.T_camera_model * symmetries[random() % symmetries.size()];
+        const RigidMm symmetric = instance.T_camera_model * symmetries[random() % symmetries.size()];
         const double spread = std::pow(10.0, Uniform(random, -2, 2));
         add(frame, instance.object_id, Perturb(symmetric, random, spread, spread / 100));
       }

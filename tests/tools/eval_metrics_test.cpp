@@ -127,12 +127,9 @@ TEST(Percentile, InterpolatesBetweenOrderStatistics) {
 
 TEST(Matching, IsOneToOneAndPrefersInstancesThatCount) {
   const std::vector<std::vector<double>> errors{{1, 2}, {1, 3}, {1, 2}};
-  EXPECT_THAT(MatchGreedily(errors, 10, {true, true}),
-              ::testing::ElementsAre(0u, 1u, std::nullopt));
-  EXPECT_THAT(MatchGreedily(errors, 10, {false, true}),
-              ::testing::ElementsAre(1u, 0u, std::nullopt));
-  EXPECT_THAT(MatchGreedily({{2}}, 2, {true}), ::testing::ElementsAre(std::nullopt))
-      << "strictly below the threshold";
+  EXPECT_THAT(MatchGreedily(errors, 10, {true, true}), ::testing::ElementsAre(0u, 1u, std::nullopt));
+  EXPECT_THAT(MatchGreedily(errors, 10, {false, true}), ::testing::ElementsAre(1u, 0u, std::nullopt));
+  EXPECT_THAT(MatchGreedily({{2}}, 2, {true}), ::testing::ElementsAre(std::nullopt)) << "strictly below the threshold";
 }
 
 TEST(Metrics, CountAHitAMissAndAFalseAlarm) {
@@ -144,8 +141,7 @@ TEST(Metrics, CountAHitAMissAndAFalseAlarm) {
   EXPECT_EQ(m.total.false_positives, 1);
   EXPECT_DOUBLE_EQ(*m.total.all.Recall(), 0.5);
   EXPECT_DOUBLE_EQ(*m.total.Precision(), 0.5);
-  EXPECT_THAT(m.total.translation_errors_mm,
-              ::testing::ElementsAre(::testing::DoubleNear(5, 1e-12)));
+  EXPECT_THAT(m.total.translation_errors_mm, ::testing::ElementsAre(::testing::DoubleNear(5, 1e-12)));
   EXPECT_DOUBLE_EQ(*m.total.AverageRecallMssd(),
                    0.5);  // 5 mm < 0.05 d: every threshold holds for one of two
   EXPECT_DOUBLE_EQ(*m.total.AverageRecallMspd(), 0.5);
@@ -219,9 +215,8 @@ TEST(Results, ReadBackAsWritten) {
 TEST(Results, NameTheLineThatIsWrong) {
   TemporaryFolder folder;
   const auto file = folder.path() / "r.csv";
-  for (const char* row :
-       {"1,2,3", "1,2,x,0.5,1 0 0 0 1 0 0 0 1,1 2 3,0", "1,2,3,0.5,1 0 0 0 1 0 0 0,1 2 3,0",
-        "1,2,3,0.5,1 0 0 0 1 0 0 0 1,1 2,0", "1,2,3,0.5,1 0 0 0 1 0 0 0 1,1 2 3,soon"}) {
+  for (const char* row : {"1,2,3", "1,2,x,0.5,1 0 0 0 1 0 0 0 1,1 2 3,0", "1,2,3,0.5,1 0 0 0 1 0 0 0,1 2 3,0",
+                          "1,2,3,0.5,1 0 0 0 1 0 0 0 1,1 2,0", "1,2,3,0.5,1 0 0 0 1 0 0 0 1,1 2 3,soon"}) {
     WriteText(file, fmt::format("scene_id,im_id,obj_id,score,R,t,time\n{}\n", row));
     const auto read = ReadResults(file);
     ASSERT_FALSE(read) << row;
@@ -257,12 +252,11 @@ TEST(GroundTruthReader, NamesFileAndPlaceOfEveryDamage) {
       {"models/models_info.json", R"({"1": {}})", "object 1: 'diameter' is missing"},
       {"models/models_info.json", R"({"1": {"diameter": "big"}})", "a number is expected"},
       {"models/models_info.json", R"({"one": {"diameter": 1}})", "'one' is not an id"},
-      {"models/models_info.json", R"({"1": {"diameter": 1, "symmetries_discrete": [[1]]}})",
-       "16 numbers"},
+      {"models/models_info.json", R"({"1": {"diameter": 1, "symmetries_discrete": [[1]]}})", "16 numbers"},
       {"models/obj_000001.ply", nullptr, "obj_000001.ply: cannot be opened"},
       {"models/obj_000001.ply", "solid\n", "not a PLY header"},
-      {"models/obj_000001.ply",
-       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n", "no x, y"},
+      {"models/obj_000001.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n",
+       "no x, y"},
       {"models/obj_000002.ply",
        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
        "property float z\nend_header\n1 2 3\n4 5\n",
@@ -271,8 +265,7 @@ TEST(GroundTruthReader, NamesFileAndPlaceOfEveryDamage) {
       {"test/000001/scene_gt_cam1.json", nullptr, "scene_gt_cam1.json: cannot be opened"},
       {"test/000001/scene_gt_cam1.json", R"({"0": 3})", "a list of instances"},
       {"test/000002/scene_gt_cam1.json", R"({"0": [{"obj_id": 4}]})", "unknown model id 4"},
-      {"test/000002/scene_gt_cam1.json", R"({"0": [{"obj_id": 1, "cam_R_m2c": [1]}]})",
-       "9 numbers"},
+      {"test/000002/scene_gt_cam1.json", R"({"0": [{"obj_id": 1, "cam_R_m2c": [1]}]})", "9 numbers"},
       {"test/000001/scene_gt_info_cam1.json", R"({"0": []})", "scene_gt"},
   };
   for (const Damage& damage : damages) {
@@ -289,8 +282,7 @@ TEST(GroundTruthReader, NamesFileAndPlaceOfEveryDamage) {
 }
 
 // Every number of `expected` must stand in `actual`.
-void ExpectSame(const nlohmann::json& expected, const nlohmann::json& actual,
-                const std::string& where) {
+void ExpectSame(const nlohmann::json& expected, const nlohmann::json& actual, const std::string& where) {
   if (expected.is_object()) {
     for (const auto& [key, value] : expected.items()) {
       ASSERT_TRUE(actual.contains(key)) << where << "/" << key;
@@ -316,11 +308,9 @@ std::string OutputOf(const std::string& command) {
 TEST(Metrics, AgreeWithTheReferenceScorer) {
   const char* named = getenv("WIREPOSE_SCORE");
   const std::string script = named != nullptr ? named : WIREPOSE_SCORE_DEFAULT;
-  if (!std::filesystem::exists(script))
-    GTEST_SKIP() << script << " is absent; name one by WIREPOSE_SCORE";
+  if (!std::filesystem::exists(script)) GTEST_SKIP() << script << " is absent; name one by WIREPOSE_SCORE";
   // The system's python is the one that Debian's numpy belongs to.
-  const std::string python =
-      std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
+  const std::string python = std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
   if (std::system((python + " -c 'import numpy' 2>/dev/null").c_str()) != 0)
     GTEST_SKIP() << "python3 with numpy is absent";
   for (unsigned seed = 1; seed <= 6; ++seed) {
@@ -333,9 +323,8 @@ TEST(Metrics, AgreeWithTheReferenceScorer) {
     const Metrics metrics = ComputeMetrics(*truth, estimates);
     ASSERT_GT(metrics.total.all.hits, 0);
     ASSERT_TRUE(WriteResults(folder.path() / "r.csv", estimates));
-    const std::string reference =
-        OutputOf(fmt::format("{} '{}' '{}' '{}' --json 2>/dev/null", python, script,
-                             (folder.path() / "r.csv").string(), folder.path().string()));
+    const std::string reference = OutputOf(fmt::format("{} '{}' '{}' '{}' --json 2>/dev/null", python, script,
+                                                       (folder.path() / "r.csv").string(), folder.path().string()));
     ASSERT_FALSE(reference.empty()) << "the scorer failed";
     ExpectSame(nlohmann::json::parse(reference), ToJson(metrics), fmt::format("seed {}", seed));
   }

@@ -74,9 +74,8 @@ TEST_F(StreamsTest, SymmetriesOfTheModelCount) {
 }
 
 TEST_F(StreamsTest, FaultsNameFileAndLine) {
-  for (const char* bad :
-       {"{\"sequence\":0,\"objects\":[]}\nnot json\n", "{\"sequence\":0,\"objects\":[]}\n{}\n",
-        "{\"sequence\":0,\"objects\":[]}\n{\"sequence\":1,\"objects\":[{\"obj_id\":1}]}\n"}) {
+  for (const char* bad : {"{\"sequence\":0,\"objects\":[]}\nnot json\n", "{\"sequence\":0,\"objects\":[]}\n{}\n",
+                          "{\"sequence\":0,\"objects\":[]}\n{\"sequence\":1,\"objects\":[{\"obj_id\":1}]}\n"}) {
     const auto truth = ReadTruthStream(Write(bad), models_);
     ASSERT_FALSE(truth) << bad;
     EXPECT_THAT(truth.error(), HasSubstr("stream.jsonl:2: "));

@@ -44,16 +44,13 @@ class ModelCommand : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  static std::string Mesh(const char* name) {
-    return std::string(WIREPOSE_MODELS) + "/" + name + ".ply";
-  }
+  static std::string Mesh(const char* name) { return std::string(WIREPOSE_MODELS) + "/" + name + ".ply"; }
   [[nodiscard]] std::string Out(const char* name) const { return (folder_ / name).string(); }
   fs::path folder_;
 };
 
 TEST_F(ModelCommand, BuildsAndShows) {
-  const Outcome built =
-      RunWirepose("model build " + Mesh("book") + " --id 5 --name atlas --out " + Out("a.wpm"));
+  const Outcome built = RunWirepose("model build " + Mesh("book") + " --id 5 --name atlas --out " + Out("a.wpm"));
   EXPECT_EQ(built.status, 0) << built.output;
   const auto model = tools::ReadModelFile(Out("a.wpm"));
   ASSERT_TRUE(model.has_value());
@@ -69,8 +66,8 @@ TEST_F(ModelCommand, BuildsAndShows) {
 }
 
 TEST_F(ModelCommand, SeveralMeshesGoIntoAFolderWithCountedIds) {
-  const Outcome built = RunWirepose("model build " + Mesh("parcel_box") + " " + Mesh("book") +
-                                    " --out " + Out("models"));
+  const Outcome built =
+      RunWirepose("model build " + Mesh("parcel_box") + " " + Mesh("book") + " --out " + Out("models"));
   EXPECT_EQ(built.status, 0) << built.output;
   EXPECT_EQ(tools::ReadModelFile(folder_ / "models" / "parcel_box.wpm").value().View().id, 1U);
   EXPECT_EQ(tools::ReadModelFile(folder_ / "models" / "book.wpm").value().View().id, 2U);
@@ -78,16 +75,14 @@ TEST_F(ModelCommand, SeveralMeshesGoIntoAFolderWithCountedIds) {
 
 TEST_F(ModelCommand, BopNamesCarryTheId) {
   fs::copy_file(Mesh("book"), folder_ / "obj_000042.ply");
-  EXPECT_EQ(RunWirepose("model build " + Out("obj_000042.ply") + " --out " + Out("b.wpm")).status,
-            0);
+  EXPECT_EQ(RunWirepose("model build " + Out("obj_000042.ply") + " --out " + Out("b.wpm")).status, 0);
   EXPECT_EQ(tools::ReadModelFile(Out("b.wpm")).value().View().id, 42U);
 }
 
 TEST_F(ModelCommand, FailuresHaveStatusOneAndOneLine) {
   for (const std::string& arguments :
-       {"model build " + Out("absent.ply") + " --out " + Out("a.wpm"),
-        "model show " + Out("absent.wpm"), "model show " + Mesh("book"),
-        "model build " + Mesh("book") + " --out " + Out("no/such/folder/a.wpm")}) {
+       {"model build " + Out("absent.ply") + " --out " + Out("a.wpm"), "model show " + Out("absent.wpm"),
+        "model show " + Mesh("book"), "model build " + Mesh("book") + " --out " + Out("no/such/folder/a.wpm")}) {
     const Outcome outcome = RunWirepose(arguments);
     EXPECT_EQ(outcome.status, 1) << arguments << outcome.output;
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
@@ -98,8 +93,7 @@ TEST_F(ModelCommand, FailuresHaveStatusOneAndOneLine) {
 TEST_F(ModelCommand, MisuseHasStatusTwo) {
   const std::string two = "model build " + Mesh("book") + " " + Mesh("parcel_box");
   for (const std::string& arguments :
-       {std::string("model"), "model build " + Mesh("book"),
-        "model build " + Mesh("book") + " --unit inch --out x.wpm",
+       {std::string("model"), "model build " + Mesh("book"), "model build " + Mesh("book") + " --unit inch --out x.wpm",
         "model build " + Mesh("book") + " --id -1 --out x.wpm", two + " --out " + Out("one.wpm"),
         two + " --name both --out " + Out("models")}) {
     EXPECT_EQ(RunWirepose(arguments).status, 2) << arguments;

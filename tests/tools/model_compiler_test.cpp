@@ -9,19 +9,20 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/mesh/test_meshes.h"
 #include "tests/model/model_consistency.h"
-#include "tests/tools/model_test_meshes.h"
+#include "tests/tools/model_test_options.h"
 #include "tools/model_compiler/models_info.h"
 
 namespace wirepose {
 namespace {
 
+using mesh::Mesh;
 using testing::BoxMesh;
 using ::testing::HasSubstr;
 using testing::TestOptions;
 using tools::CompiledModel;
 using tools::CompileModel;
-using tools::Mesh;
 
 CompiledModel Compile(const Mesh& mesh) {
   auto model = CompileModel(mesh, TestOptions());
@@ -75,8 +76,7 @@ TEST(ModelCompiler, EdgesNameTheTwoFacesTheyLieIn) {
 
 TEST(ModelCompiler, OrderOfVerticesAndTrianglesDoesNotMatter) {
   std::mt19937 random(3);
-  for (const Mesh& mesh :
-       {BoxMesh(0.3, 0.2, 0.15), testing::TwoPartMesh(), testing::PrismMesh(7, 0.1, 0.3)}) {
+  for (const Mesh& mesh : {BoxMesh(0.3, 0.2, 0.15), testing::TwoPartMesh(), testing::PrismMesh(7, 0.1, 0.3)}) {
     const CompiledModel reference = Compile(mesh);
     for (int i = 0; i < 5; ++i) {
       EXPECT_EQ(Compile(testing::Shuffled(mesh, random)).bytes, reference.bytes);
@@ -144,8 +144,7 @@ TEST(ModelCompiler, TJunctionsLeaveOneStraightEdge) {
   mesh.triangles.erase(mesh.triangles.begin() + 4, mesh.triangles.begin() + 6);
   const int cuts = 5, first = static_cast<int>(mesh.vertices.size());
   for (int i = 0; i <= cuts; ++i) {
-    for (const double z : {-0.075, 0.075})
-      mesh.vertices.emplace_back(-0.15 + 0.3 * i / cuts, -0.1, z);
+    for (const double z : {-0.075, 0.075}) mesh.vertices.emplace_back(-0.15 + 0.3 * i / cuts, -0.1, z);
   }
   for (int i = 0; i < cuts; ++i) {
     const int a = first + 2 * i;
@@ -213,8 +212,7 @@ TEST(ModelCompiler, EdgesInsideTheObjectAreLeftOut) {
 TEST(ModelCompiler, KeepsTheLongestOfTooManyEdges) {
   Mesh mesh;
   for (int i = 0; i < 30; ++i) {  // 360 edges on a shelf, the later the longer
-    testing::Append(BoxMesh(0.02, 0.02, 0.02 + 0.001 * i, {0.1 * (i % 6), 0.1 * (i / 6 % 6), 0}),
-                    mesh);
+    testing::Append(BoxMesh(0.02, 0.02, 0.02 + 0.001 * i, {0.1 * (i % 6), 0.1 * (i / 6 % 6), 0}), mesh);
   }
   const CompiledModel model = Compile(mesh);
   const ModelView m = model.View();
@@ -253,8 +251,7 @@ class ModelFiles : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        std::filesystem::path(::testing::TempDir()) / (std::string("wirepose_") + info->name());
+    folder_ = std::filesystem::path(::testing::TempDir()) / (std::string("wirepose_") + info->name());
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }
@@ -270,10 +267,9 @@ class ModelFiles : public ::testing::Test {
 std::string PlyText(const Mesh& mesh) {
   std::ostringstream out;
   out << "ply\nformat ascii 1.0\nelement vertex " << mesh.vertices.size()
-      << "\nproperty float x\nproperty float y\nproperty float z\nelement face "
-      << mesh.triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (const auto& v : mesh.vertices)
-    out << v.x() * 1e3 << ' ' << v.y() * 1e3 << ' ' << v.z() * 1e3 << '\n';
+      << "\nproperty float x\nproperty float y\nproperty float z\nelement face " << mesh.triangles.size()
+      << "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const auto& v : mesh.vertices) out << v.x() * 1e3 << ' ' << v.y() * 1e3 << ' ' << v.z() * 1e3 << '\n';
   for (const auto& t : mesh.triangles) out << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
   return out.str();
 }
@@ -282,8 +278,7 @@ std::string ObjText(const Mesh& mesh, double scale) {
   std::ostringstream out;
   for (const auto& v : mesh.vertices)
     out << "v " << v.x() * scale << ' ' << v.y() * scale << ' ' << v.z() * scale << '\n';
-  for (const auto& t : mesh.triangles)
-    out << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
+  for (const auto& t : mesh.triangles) out << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
   return out.str();
 }
 
@@ -371,8 +366,7 @@ TEST_F(ModelFiles, ModelsInfoIsInMillimetres) {
   EXPECT_NEAR(info.at("size_z").get<double>(), 150, 1e-3);
   ASSERT_EQ(info.at("symmetries_discrete").size(), 3U);
   double largest_shift = 0;
-  for (const auto& s : info.at("symmetries_discrete"))
-    largest_shift = std::max(largest_shift, s.at(3).get<double>());
+  for (const auto& s : info.at("symmetries_discrete")) largest_shift = std::max(largest_shift, s.at(3).get<double>());
   EXPECT_NEAR(largest_shift, 200, 1e-2);  // a half turn about an axis through (100 mm, 0, 0)
 }
 

@@ -4,19 +4,18 @@
 #include <limits>
 #include <map>
 
-#include "tests/tools/model_test_meshes.h"
+#include "tests/mesh/test_meshes.h"
+#include "tests/tools/model_test_options.h"
 #include "tools/model_compiler/aspects.h"
 
 namespace wirepose {
 namespace {
 
+using mesh::Mesh;
 using testing::BoxMesh;
 using tools::CompiledModel;
-using tools::Mesh;
 
-CompiledModel Compile(const Mesh& mesh) {
-  return tools::CompileModel(mesh, testing::TestOptions()).value();
-}
+CompiledModel Compile(const Mesh& mesh) { return tools::CompileModel(mesh, testing::TestOptions()).value(); }
 
 Matrix3d RandomRotation(std::mt19937& random) {
   std::normal_distribution<double> normal;
@@ -42,14 +41,12 @@ void ExpectGroup(const ModelView& m) {
     for (std::size_t v = 0; v < m.vertices.size(); ++v) {
       const Vector3 p = R * m.VertexPosition(v) + Vector3(s.translation_m);
       float nearest = std::numeric_limits<float>::infinity();
-      for (std::size_t w = 0; w < m.vertices.size(); ++w)
-        nearest = std::min(nearest, (p - m.VertexPosition(w)).norm());
+      for (std::size_t w = 0; w < m.vertices.size(); ++w) nearest = std::min(nearest, (p - m.VertexPosition(w)).norm());
       EXPECT_LT(nearest, 2e-3F * m.diameter_m);
     }
     EXPECT_LT(R.trace(), 2.999F) << "the identity is not stored";
     for (std::size_t j = 0; j < i; ++j) {
-      const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> Q(
-          m.symmetries[j].rotation);
+      const Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>> Q(m.symmetries[j].rotation);
       EXPECT_GT((R - Q).norm(), 0.1F);
     }
   }
@@ -68,8 +65,7 @@ TEST(ModelSymmetry, KnownGroupsInAnyPose) {
   };
   for (const auto& [mesh, expected] : cases) {
     for (int i = 0; i < 6; ++i) {
-      const CompiledModel model =
-          Compile(Moved(mesh, {RandomRotation(random), Vector3d(0.3, -0.2, 0.9)}));
+      const CompiledModel model = Compile(Moved(mesh, {RandomRotation(random), Vector3d(0.3, -0.2, 0.9)}));
       EXPECT_EQ(model.View().symmetries.size(), expected);
       ExpectGroup(model.View());
     }
@@ -109,8 +105,7 @@ bool BlockedBruteForce(const ModelView& m, const Vector3d& from, const Vector3d&
 TEST(ModelAspects, AgreeWithBruteForce) {
   std::mt19937 random(7);
   for (const Mesh& mesh : {testing::TwoPartMesh(), testing::PrismMesh(5, 0.1, 0.3)}) {
-    const CompiledModel model =
-        Compile(Moved(mesh, {RandomRotation(random), Vector3d(0.1, 0.2, -0.3)}));
+    const CompiledModel model = Compile(Moved(mesh, {RandomRotation(random), Vector3d(0.1, 0.2, -0.3)}));
     const ModelView m = model.View();
     const double diameter = static_cast<double>(m.diameter_m);
     const Vector3d centre = (m.box_min_m + m.box_max_m).cast<double>() / 2;
@@ -122,8 +117,8 @@ TEST(ModelAspects, AgreeWithBruteForce) {
         const ModelEdge& edge = m.edges[e];
         bool faces_camera = edge.face[1] == kNoFace;
         for (const std::uint16_t f : edge.face) {
-          faces_camera |= Vector3(m.faces[f].normal).cast<double>().dot(camera) >
-                          static_cast<double>(m.faces[f].offset_m);
+          faces_camera |=
+              Vector3(m.faces[f].normal).cast<double>().dot(camera) > static_cast<double>(m.faces[f].offset_m);
         }
         int samples = 0;
         for (int k = 0; k < 16 && faces_camera; ++k) {
@@ -145,10 +140,8 @@ TEST(ModelAspects, AgreeWithBruteForce) {
 TEST(ModelAspects, BoxShowsFourSevenOrNineEdges) {
   const CompiledModel model = Compile(BoxMesh(0.3, 0.2, 0.15));
   std::map<int, int> views_by_count;
-  for (const ModelAspect& a : model.View().aspects)
-    ++views_by_count[__builtin_popcount(a.visible_edges[0])];
-  for (const auto& [count, views] : views_by_count)
-    EXPECT_TRUE(count == 4 || count == 7 || count == 9) << count;
+  for (const ModelAspect& a : model.View().aspects) ++views_by_count[__builtin_popcount(a.visible_edges[0])];
+  for (const auto& [count, views] : views_by_count) EXPECT_TRUE(count == 4 || count == 7 || count == 9) << count;
   EXPECT_GT(views_by_count[9], 80);  // most directions see three faces
 }
 
@@ -181,14 +174,11 @@ double Smallest(const Function& distance) {
   return distance((low + high) / 2);
 }
 
-void ExpectMemberMatches(const ModelView& m, const ModelLineSet& set,
-                         const ModelSetMember& member) {
+void ExpectMemberMatches(const ModelView& m, const ModelLineSet& set, const ModelSetMember& member) {
   const ModelEdge& b = m.edges[set.base_edge];
   const ModelEdge& o = m.edges[member.edge];
-  const Vector3d p = m.VertexPosition(b.vertex[0]).cast<double>(),
-                 p2 = m.VertexPosition(b.vertex[1]).cast<double>();
-  const Vector3d q = m.VertexPosition(o.vertex[0]).cast<double>(),
-                 q2 = m.VertexPosition(o.vertex[1]).cast<double>();
+  const Vector3d p = m.VertexPosition(b.vertex[0]).cast<double>(), p2 = m.VertexPosition(b.vertex[1]).cast<double>();
+  const Vector3d q = m.VertexPosition(o.vertex[0]).cast<double>(), q2 = m.VertexPosition(o.vertex[1]).cast<double>();
   const Vector3d d = (p2 - p).normalized(), e = (q2 - q).normalized();
   const double angle = std::acos(std::min(1.0, std::abs(d.dot(e))));
   EXPECT_NEAR(static_cast<double>(member.angle_rad), angle, 1e-3);
@@ -209,25 +199,21 @@ void ExpectMemberMatches(const ModelView& m, const ModelLineSet& set,
   EXPECT_NEAR(static_cast<double>(member.nearest_end_m), nearest, 1e-6);
   EXPECT_NEAR(static_cast<double>(member.farthest_end_m), farthest, 1e-6);
   int common = 0;
-  for (const std::uint16_t f : b.face)
-    common += f != kNoFace && (f == o.face[0] || f == o.face[1]) ? 1 : 0;
+  for (const std::uint16_t f : b.face) common += f != kNoFace && (f == o.face[0] || f == o.face[1]) ? 1 : 0;
   EXPECT_EQ(member.common_faces, common);
 }
 
 bool SeenTogether(const ModelView& m, std::size_t i, std::size_t j) {
   for (const ModelAspect& a : m.aspects) {
-    if ((a.visible_edges[i / 32] >> (i % 32) & a.visible_edges[j / 32] >> (j % 32) & 1U) != 0)
-      return true;
+    if ((a.visible_edges[i / 32] >> (i % 32) & a.visible_edges[j / 32] >> (j % 32) & 1U) != 0) return true;
   }
   return false;
 }
 
 TEST(ModelLineSets, ParameterVectorsAgreeWithBruteForce) {
   std::mt19937 random(8);
-  for (const Mesh& mesh :
-       {BoxMesh(0.3, 0.2, 0.15), testing::TwoPartMesh(), testing::PrismMesh(5, 0.1, 0.3)}) {
-    const CompiledModel model =
-        Compile(Moved(mesh, {RandomRotation(random), Vector3d(0.1, 0.2, -0.3)}));
+  for (const Mesh& mesh : {BoxMesh(0.3, 0.2, 0.15), testing::TwoPartMesh(), testing::PrismMesh(5, 0.1, 0.3)}) {
+    const CompiledModel model = Compile(Moved(mesh, {RandomRotation(random), Vector3d(0.1, 0.2, -0.3)}));
     const ModelView m = model.View();
     std::size_t pairs = 0;
     for (const ModelLineSet& set : m.line_sets) {
@@ -243,8 +229,7 @@ TEST(ModelLineSets, ParameterVectorsAgreeWithBruteForce) {
     // Complete: every ordered pair of edges that some aspect shows together is in exactly one set.
     std::size_t expected = 0;
     for (std::size_t i = 0; i < m.edges.size(); ++i) {
-      for (std::size_t j = 0; j < m.edges.size(); ++j)
-        expected += i != j && SeenTogether(m, i, j) ? 1 : 0;
+      for (std::size_t j = 0; j < m.edges.size(); ++j) expected += i != j && SeenTogether(m, i, j) ? 1 : 0;
     }
     EXPECT_EQ(pairs, expected);
   }

@@ -60,8 +60,7 @@ TEST(VisibleEdges, PiecesOfAnEdgeCoverIt) {
   for (std::size_t e = 0; e < covered.size(); ++e) {
     const ModelEdge& edge = box.view().edges[e];
     const double length = static_cast<double>(
-        (box.view().VertexPosition(edge.vertex[0]) - box.view().VertexPosition(edge.vertex[1]))
-            .norm());
+        (box.view().VertexPosition(edge.vertex[0]) - box.view().VertexPosition(edge.vertex[1])).norm());
     EXPECT_NEAR(covered[e], length, 1e-6);
   }
 }
@@ -121,8 +120,7 @@ TEST_F(OverlayTest, ShowsLinesBySideAndDepth) {
 
 TEST_F(OverlayTest, DrawsTheModelWhereItProjects) {
   const BoxModel box(0.2F, 0.2F, 0.2F);
-  input_.objects.push_back(
-      {box.view(), {Matrix3d::Identity(), Vector3d(0, 0, 1.1)}, PoseKind::kFound, "box 0.97"});
+  input_.objects.push_back({box.view(), {Matrix3d::Identity(), Vector3d(0, 0, 1.1)}, PoseKind::kFound, "box 0.97"});
   const cv::Mat image = DrawOverlay(input_);
   // The front face is at 1 m: its right edge at u = 320 + 50, from v = 190 to 290.
   EXPECT_TRUE(IsColoured(image, 1280 + 2 * 370, 2 * 240));
@@ -131,10 +129,8 @@ TEST_F(OverlayTest, DrawsTheModelWhereItProjects) {
 
 TEST_F(OverlayTest, SurvivesPosesThatCannotBeDrawn) {
   const BoxModel box(0.2F, 0.2F, 0.2F);
-  input_.objects.push_back(
-      {box.view(), {Matrix3d::Identity(), Vector3d(0, 0, -1)}, PoseKind::kTruth, "behind"});
-  input_.objects.push_back(
-      {box.view(), {Matrix3d::Identity(), Vector3d(500, 0, 0.2)}, PoseKind::kFound, "beside"});
+  input_.objects.push_back({box.view(), {Matrix3d::Identity(), Vector3d(0, 0, -1)}, PoseKind::kTruth, "behind"});
+  input_.objects.push_back({box.view(), {Matrix3d::Identity(), Vector3d(500, 0, 0.2)}, PoseKind::kFound, "beside"});
   EXPECT_FALSE(DrawOverlay(input_).empty());
 }
 

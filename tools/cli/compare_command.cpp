@@ -34,22 +34,20 @@ struct CompareArguments {
 std::string PoseText(const evaluation::RigidMm& T) {
   const Eigen::Quaterniond q(T.R);
   const double sign = q.w() < 0 ? -1 : 1;
-  return fmt::format("({:8.1f} {:8.1f} {:8.1f}) mm  q ({:6.3f} {:6.3f} {:6.3f} {:6.3f})",
-                     T.t_mm.x(), T.t_mm.y(), T.t_mm.z(), sign * q.x(), sign * q.y(), sign * q.z(),
-                     sign * q.w());
+  return fmt::format("({:8.1f} {:8.1f} {:8.1f}) mm  q ({:6.3f} {:6.3f} {:6.3f} {:6.3f})", T.t_mm.x(), T.t_mm.y(),
+                     T.t_mm.z(), sign * q.x(), sign * q.y(), sign * q.z(), sign * q.w());
 }
 
 void PrintOutcome(const InstanceOutcome& o, const evaluation::ModelSet& models) {
   const ModelView* model = models.Find(static_cast<std::uint32_t>(o.object_id));
-  fmt::print("frame {:3}  {} (model {}), {:.0f} % visible\n", o.image_id,
-             model != nullptr ? model->name : "?", o.object_id, 100 * o.visible_fraction);
+  fmt::print("frame {:3}  {} (model {}), {:.0f} % visible\n", o.image_id, model != nullptr ? model->name : "?",
+             o.object_id, 100 * o.visible_fraction);
   fmt::print("  truth     {}\n", PoseText(o.truth));
   if (o.hit) {
-    fmt::print("  received  {}  score {:.2f}\n  error     {:.2f} mm  {:.2f} deg\n",
-               PoseText(o.estimate), o.score, o.translation_mm, o.rotation_deg);
+    fmt::print("  received  {}  score {:.2f}\n  error     {:.2f} mm  {:.2f} deg\n", PoseText(o.estimate), o.score,
+               o.translation_mm, o.rotation_deg);
   } else if (o.best_mssd_mm) {
-    fmt::print("  received  a pose that is off by {:.1f} mm: not counted as found\n",
-               *o.best_mssd_mm);
+    fmt::print("  received  a pose that is off by {:.1f} mm: not counted as found\n", *o.best_mssd_mm);
   } else {
     fmt::print("  received  nothing\n");
   }
@@ -63,8 +61,8 @@ void PrintTotals(const Metrics& m) {
   fmt::print(
       "{} frames received: {} of {} visible objects found, {} false alarms; median error {} mm, {} "
       "deg\n",
-      m.frames, m.total.all.hits, m.total.all.instances, m.total.false_positives,
-      median(m.total.translation_errors_mm), median(m.total.rotation_errors_deg));
+      m.frames, m.total.all.hits, m.total.all.instances, m.total.false_positives, median(m.total.translation_errors_mm),
+      median(m.total.rotation_errors_deg));
 }
 
 // The received frame with the most objects found; the earliest of equals, which is rendered
@@ -72,8 +70,7 @@ void PrintTotals(const Metrics& m) {
 int BestFrame(const Metrics& m) {
   std::map<int, int> hits;
   for (const InstanceOutcome& o : m.instances) hits[o.image_id] += o.hit;
-  const auto best =
-      std::ranges::max_element(hits, {}, [](const auto& entry) { return entry.second; });
+  const auto best = std::ranges::max_element(hits, {}, [](const auto& entry) { return entry.second; });
   return best != hits.end() ? best->first : 0;
 }
 
@@ -100,19 +97,16 @@ void CheckSameScene(const hal::SimulatedCamera& camera, const FrameTruth& frame)
   for (const evaluation::InstanceTruth& i : frame.instances) {
     const bool same =
         truth && std::ranges::any_of(truth->objects, [&](const hal::SimulatedObject& o) {
-          return o.obj_id == i.object_id &&
-                 (1000 * o.T_camera_model.t - i.T_camera_model.t_mm).norm() < 1e-3;
+          return o.obj_id == i.object_id && (1000 * o.T_camera_model.t - i.T_camera_model.t_mm).norm() < 1e-3;
         });
-    if (!same)
-      throw UsageError(
-          "--overlay: the camera's options differ from those the truth was written with");
+    if (!same) throw UsageError("--overlay: the camera's options differ from those the truth was written with");
   }
 }
 
 Pose ToMetres(const evaluation::RigidMm& T) { return {T.R, T.t_mm / 1000}; }
 
-void DrawReceived(const CompareArguments& arguments, const evaluation::ModelSet& models,
-                  const FrameTruth& frame, const std::vector<Estimate>& estimates) {
+void DrawReceived(const CompareArguments& arguments, const evaluation::ModelSet& models, const FrameTruth& frame,
+                  const std::vector<Estimate>& estimates) {
   hal::SimulatedConfig config = arguments.camera;
   config.frame_count = static_cast<std::uint64_t>(frame.image_id) + 1;
   hal::SimulatedCamera camera(config);
@@ -123,8 +117,7 @@ void DrawReceived(const CompareArguments& arguments, const evaluation::ModelSet&
   bool ok = recognizer.Configure(camera.calibration()) == RecognizerError::kOk;
   for (const ModelView& m : models.views) ok = ok && recognizer.AddModel(m) == RecognizerError::kOk;
   ok = ok && recognizer.Process(lease->left, lease->right, nullptr, result) == RecognizerError::kOk;
-  if (!ok)
-    throw WorkFailed("--overlay: the recognizer refused the simulated frame; check --models");
+  if (!ok) throw WorkFailed("--overlay: the recognizer refused the simulated frame; check --models");
   overlay::OverlayInput input = LinesOf(recognizer);
   for (const evaluation::InstanceTruth& i : frame.instances) {
     const ModelView* model = models.Find(static_cast<std::uint32_t>(i.object_id));
@@ -151,14 +144,12 @@ void RunCompare(const CompareArguments& arguments) {
   evaluation::KeepFrames(received->frames, *truth);
   if (truth->frames.empty()) {
     throw WorkFailed(
-        fmt::format("{}: no received frame is in it; truth and messages must be of one run",
-                    arguments.truth.string()));
+        fmt::format("{}: no received frame is in it; truth and messages must be of one run", arguments.truth.string()));
   }
   const Metrics metrics = evaluation::ComputeMetrics(*truth, received->estimates);
   for (const InstanceOutcome& o : metrics.instances) PrintOutcome(o, *models);
   for (const evaluation::FalsePositive& f : metrics.false_positives) {
-    fmt::print("frame {:3}  model {}: false alarm, score {:.2f}\n", f.image_id, f.object_id,
-               f.score);
+    fmt::print("frame {:3}  model {}: false alarm, score {:.2f}\n", f.image_id, f.object_id, f.score);
   }
   PrintTotals(metrics);
   if (!arguments.overlay.empty()) {
@@ -168,32 +159,25 @@ void RunCompare(const CompareArguments& arguments) {
     fmt::print("overlay: {}\n", std::filesystem::absolute(arguments.overlay).string());
   }
   if (metrics.total.all.hits >= arguments.min_hits) return;
-  throw WorkFailed(fmt::format("{}: {} objects found, at least {} expected (--min-hits)",
-                               arguments.received.string(), metrics.total.all.hits,
-                               arguments.min_hits));
+  throw WorkFailed(fmt::format("{}: {} objects found, at least {} expected (--min-hits)", arguments.received.string(),
+                               metrics.total.all.hits, arguments.min_hits));
 }
 
 }  // namespace
 
 void AddCompareCommand(CLI::App& app) {
   const auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* compare = app.add_subcommand(
-      "compare", "Compare poses received over DDS with the simulated scene's truth");
-  compare->add_option("--truth", arguments->truth, "Truth that the simulated camera wrote")
-      ->required();
-  compare->add_option("--received", arguments->received, "Output of 'wirepose watch --json'")
-      ->required();
+  CLI::App* compare = app.add_subcommand("compare", "Compare poses received over DDS with the simulated scene's truth");
+  compare->add_option("--truth", arguments->truth, "Truth that the simulated camera wrote")->required();
+  compare->add_option("--received", arguments->received, "Output of 'wirepose watch --json'")->required();
   compare->add_option("--models", arguments->models, "A .wpm file or a folder of them")->required();
   compare->add_option("--min-hits", arguments->min_hits, "Fail when fewer objects were found");
-  compare->add_option("--overlay", arguments->overlay,
-                      "Picture (PNG) of the received poses on the best frame");
+  compare->add_option("--overlay", arguments->overlay, "Picture (PNG) of the received poses on the best frame");
   hal::SimulatedConfig& camera = arguments->camera;
   compare->add_option("--meshes", camera.mesh_dir, "For --overlay: the camera's mesh folder");
   compare->add_option("--seed", camera.seed, "For --overlay: the camera's seed");
-  compare->add_option("--frame-rate", camera.frame_rate_hz,
-                      "For --overlay: the camera's frame rate, Hz");
-  compare->add_option("--samples", camera.samples_per_pixel,
-                      "For --overlay: the camera's samples per pixel");
+  compare->add_option("--frame-rate", camera.frame_rate_hz, "For --overlay: the camera's frame rate, Hz");
+  compare->add_option("--samples", camera.samples_per_pixel, "For --overlay: the camera's samples per pixel");
   compare->callback([arguments] { RunCompare(*arguments); });
 }
 

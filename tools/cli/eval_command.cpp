@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 struct EvalArguments {
   evaluation::EvaluationOptions options;
   fs::path out;
-  fs::path json;     // empty: none
-  fs::path overlay;  // folder; empty: none
+  fs::path json;        // empty: none
+  fs::path overlay;     // folder; empty: none
   fs::path candidates;  // empty: none
 };
 
@@ -33,8 +33,7 @@ struct EvalArguments {
 void CheckWritable(const fs::path& file) {
   std::ofstream out(file, std::ios::app);
   if (out) return;
-  throw UsageError(file.string() +
-                   ": cannot be written; name a file in an existing folder you may write to");
+  throw UsageError(file.string() + ": cannot be written; name a file in an existing folder you may write to");
 }
 
 void DrawFrame(const evaluation::FrameView& view, const EvalArguments& arguments) {
@@ -51,8 +50,7 @@ void DrawFrame(const evaluation::FrameView& view, const EvalArguments& arguments
               fmt::format("{} {:.2f}", model->name, d.score), input);
   }
   input.caption = fmt::format("scene {} image {}", view.entry.scene_id, view.entry.im_id);
-  WriteOverlay(input, arguments.overlay /
-                          fmt::format("{:06d}_{:06d}.png", view.entry.scene_id, view.entry.im_id));
+  WriteOverlay(input, arguments.overlay / fmt::format("{:06d}_{:06d}.png", view.entry.scene_id, view.entry.im_id));
 }
 
 void ShowProgress(const evaluation::FrameView& view) {
@@ -94,15 +92,11 @@ void RunEval(const EvalArguments& arguments) {
 
 void AddEvalCommand(CLI::App& app) {
   const auto arguments = std::make_shared<EvalArguments>();
-  CLI::App* eval =
-      app.add_subcommand("eval", "Run the recognizer over a data set and measure what it finds");
-  eval->add_option("dataset", arguments->options.dataset,
-                   "Folder with calib.yaml, models/ and test/")
-      ->required();
+  CLI::App* eval = app.add_subcommand("eval", "Run the recognizer over a data set and measure what it finds");
+  eval->add_option("dataset", arguments->options.dataset, "Folder with calib.yaml, models/ and test/")->required();
   eval->add_option("--models", arguments->options.models,
                    "A .wpm file or a folder of them; without it DATASET/models/*.ply are compiled");
-  eval->add_option("--objects", arguments->options.object_ids,
-                   "Search for these model ids only, as 1,3")
+  eval->add_option("--objects", arguments->options.object_ids, "Search for these model ids only, as 1,3")
       ->delimiter(',');
   eval->add_option("--out", arguments->out, "Detections, as BOP results (CSV)")->required();
   eval->add_option("--json", arguments->json, "All measures, stage times and list use (JSON)");

@@ -11,8 +11,7 @@ using Json = nlohmann::ordered_json;
 template <typename Sequence, typename F>
 Json Each(const Sequence& sequence, F f) {
   Json array = Json::array();
-  for (const auto& element : std::span(sequence._buffer, sequence._length))
-    array.push_back(f(element));
+  for (const auto& element : std::span(sequence._buffer, sequence._length)) array.push_back(f(element));
   return array;
 }
 
@@ -21,10 +20,7 @@ Json PoseJson(const wirepose_Pose& pose) {
 }
 
 Json ListUseJson(const wirepose_ListUse& list) {
-  return {{"name", list.name},
-          {"used", list.used},
-          {"capacity", list.capacity},
-          {"dropped", list.dropped}};
+  return {{"name", list.name}, {"used", list.used}, {"capacity", list.capacity}, {"dropped", list.dropped}};
 }
 
 Json DetectionJson(const wirepose_Detection& detection) {
@@ -47,15 +43,12 @@ Json RosPoseJson(const geometry_msgs_msg_dds__Pose_& pose) {
 }
 
 Json RosHeaderJson(const std_msgs_msg_dds__Header_& header) {
-  return {{"stamp", {{"sec", header.stamp.sec}, {"nanosec", header.stamp.nanosec}}},
-          {"frame_id", header.frame_id}};
+  return {{"stamp", {{"sec", header.stamp.sec}, {"nanosec", header.stamp.nanosec}}}, {"frame_id", header.frame_id}};
 }
 
 Json RosResultJson(const vision_msgs_msg_dds__ObjectHypothesisWithPose_& result) {
-  return {
-      {"hypothesis",
-       {{"class_id", result.hypothesis.class_id}, {"score", result.hypothesis.score}}},
-      {"pose", {{"pose", RosPoseJson(result.pose.pose)}, {"covariance", result.pose.covariance}}}};
+  return {{"hypothesis", {{"class_id", result.hypothesis.class_id}, {"score", result.hypothesis.score}}},
+          {"pose", {{"pose", RosPoseJson(result.pose.pose)}, {"covariance", result.pose.covariance}}}};
 }
 
 Json RosDetectionJson(const vision_msgs_msg_dds__Detection3D_& detection) {
@@ -63,8 +56,7 @@ Json RosDetectionJson(const vision_msgs_msg_dds__Detection3D_& detection) {
   return {{"header", RosHeaderJson(detection.header)},
           {"results", Each(detection.results, RosResultJson)},
           {"bbox",
-           {{"center", RosPoseJson(detection.bbox.center)},
-            {"size", {{"x", size.x}, {"y", size.y}, {"z", size.z}}}}},
+           {{"center", RosPoseJson(detection.bbox.center)}, {"size", {{"x", size.x}, {"y", size.y}, {"z", size.z}}}}},
           {"id", detection.id}};
 }
 
@@ -103,13 +95,12 @@ Json ToJson(const wirepose_Health& message) {
           {"camera", message.camera},
           {"camera_status", message.camera_status},
           {"last_error", message.last_error},
-          {"stage_times", Each(message.stage_times,
-                               [](const wirepose_StageTime& time) {
-                                 return Json{{"stage", time.stage},
-                                             {"p50_ns", time.p50_ns},
-                                             {"p99_ns", time.p99_ns},
-                                             {"max_ns", time.max_ns}};
-                               })},
+          {"stage_times",
+           Each(message.stage_times,
+                [](const wirepose_StageTime& time) {
+                  return Json{
+                      {"stage", time.stage}, {"p50_ns", time.p50_ns}, {"p99_ns", time.p99_ns}, {"max_ns", time.max_ns}};
+                })},
           {"lists", Each(message.lists, ListUseJson)},
           {"queue_high_water", message.queue_high_water},
           {"queue_capacity", message.queue_capacity},

@@ -30,8 +30,8 @@ std::string DetectionText(const wirepose_Detection& detection) {
   std::string text = fmt::format(
       "  {} (id {}) at [{:.4f} {:.4f} {:.4f}] m, q [{:.4f} {:.4f} {:.4f} {:.4f}], {}, score "
       "{:.3f}, visible {:.2f}",
-      detection.name, detection.model_id, p[0], p[1], p[2], q[0], q[1], q[2], q[3],
-      Spread(detection.covariance), detection.score, detection.visible_fraction);
+      detection.name, detection.model_id, p[0], p[1], p[2], q[0], q[1], q[2], q[3], Spread(detection.covariance),
+      detection.score, detection.visible_fraction);
   if (detection.track_id != 0) text += fmt::format(", track {}", detection.track_id);
   if (detection.modes._length > 0) text += fmt::format(", {} modes", detection.modes._length);
   return text + "\n";
@@ -58,26 +58,23 @@ const char* StateName(wirepose_HealthState state) {
 }
 
 std::string ToText(const wirepose_Recognition& message) {
-  std::string text = fmt::format(
-      "frame {} at {:.3f} s: {} object{}{}\n", message.frame_sequence,
-      1e-9 * static_cast<double>(message.capture_time_ns), message.detections._length,
-      message.detections._length == 1 ? "" : "s", message.budget_hit ? ", search budget hit" : "");
-  for (const wirepose_Detection& detection : Elements(message.detections))
-    text += DetectionText(detection);
+  std::string text =
+      fmt::format("frame {} at {:.3f} s: {} object{}{}\n", message.frame_sequence,
+                  1e-9 * static_cast<double>(message.capture_time_ns), message.detections._length,
+                  message.detections._length == 1 ? "" : "s", message.budget_hit ? ", search budget hit" : "");
+  for (const wirepose_Detection& detection : Elements(message.detections)) text += DetectionText(detection);
   return text;
 }
 
 std::string ToText(const vision_msgs_msg_dds__Detection3DArray_& message) {
   std::string text = fmt::format("detections in {} at {}.{:09} s: {}\n", message.header.frame_id,
-                                 message.header.stamp.sec, message.header.stamp.nanosec,
-                                 message.detections._length);
+                                 message.header.stamp.sec, message.header.stamp.nanosec, message.detections._length);
   for (const auto& detection : Elements(message.detections)) {
     for (const auto& result : Elements(detection.results)) {
       const auto& [p, q] = result.pose.pose;
-      text += fmt::format(
-          "  {} at [{:.4f} {:.4f} {:.4f}] m, q [{:.4f} {:.4f} {:.4f} {:.4f}], {}, score {:.3f}\n",
-          result.hypothesis.class_id, p.x, p.y, p.z, q.x, q.y, q.z, q.w,
-          Spread(result.pose.covariance), result.hypothesis.score);
+      text += fmt::format("  {} at [{:.4f} {:.4f} {:.4f}] m, q [{:.4f} {:.4f} {:.4f} {:.4f}], {}, score {:.3f}\n",
+                          result.hypothesis.class_id, p.x, p.y, p.z, q.x, q.y, q.z, q.w, Spread(result.pose.covariance),
+                          result.hypothesis.score);
     }
   }
   return text;
@@ -89,13 +86,12 @@ std::string ToText(const wirepose_Health& message) {
       "health: {}, wireposed {}, up {:.1f} s, camera {}: {}\n"
       "  frames: {} good, {} missing, {} damaged, {} not synchronous, {} late, {} failed; "
       "results dropped {}, write errors {}\n",
-      StateName(message.state), message.version, 1e-9 * static_cast<double>(message.uptime_ns),
-      message.camera, message.camera_status, f.good, f.missing, f.damaged, f.not_synchronous,
-      f.late, f.failed, message.results_dropped, message.write_errors);
+      StateName(message.state), message.version, 1e-9 * static_cast<double>(message.uptime_ns), message.camera,
+      message.camera_status, f.good, f.missing, f.damaged, f.not_synchronous, f.late, f.failed, message.results_dropped,
+      message.write_errors);
   for (const wirepose_StageTime& time : Elements(message.stage_times)) {
     text += fmt::format("  {:<16} p50 {:8.3f} ms  p99 {:8.3f} ms  max {:8.3f} ms\n", time.stage,
-                        Milliseconds(time.p50_ns), Milliseconds(time.p99_ns),
-                        Milliseconds(time.max_ns));
+                        Milliseconds(time.p50_ns), Milliseconds(time.p99_ns), Milliseconds(time.max_ns));
   }
   for (const wirepose_ModelStatus& model : Elements(message.models)) {
     text += fmt::format("  model {} {} ({:08x})\n", model.id, model.name, model.checksum);

@@ -18,15 +18,14 @@ overlay::OverlayInput LinesOf(const Recognizer& recognizer) {
   return input;
 }
 
-void AddObject(const Recognizer& recognizer, const ModelView& model, const Pose& T_raw_model,
-               overlay::PoseKind kind, const std::string& label, overlay::OverlayInput& input) {
+void AddObject(const Recognizer& recognizer, const ModelView& model, const Pose& T_raw_model, overlay::PoseKind kind,
+               const std::string& label, overlay::OverlayInput& input) {
   input.objects.push_back({model, recognizer.T_rectified_raw() * T_raw_model, kind, label});
 }
 
 void WriteOverlay(const overlay::OverlayInput& input, const std::filesystem::path& file) {
   if (input.left_rectified.data == nullptr) {
-    throw WorkFailed(file.string() +
-                     ": there is no rectified image to draw on; process a frame first");
+    throw WorkFailed(file.string() + ": there is no rectified image to draw on; process a frame first");
   }
   std::error_code ignored;  // a folder that cannot be made shows when the file is written
   std::filesystem::create_directories(file.parent_path(), ignored);

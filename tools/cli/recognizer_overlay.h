@@ -13,8 +13,8 @@ namespace wirepose::cli {
 overlay::OverlayInput LinesOf(const Recognizer& recognizer);
 
 // Adds a model at a pose that is given, as all of Wirepose's output is, in the raw left camera.
-void AddObject(const Recognizer& recognizer, const ModelView& model, const Pose& T_raw_model,
-               overlay::PoseKind kind, const std::string& label, overlay::OverlayInput& input);
+void AddObject(const Recognizer& recognizer, const ModelView& model, const Pose& T_raw_model, overlay::PoseKind kind,
+               const std::string& label, overlay::OverlayInput& input);
 
 // Draws and writes a PNG, making its folder. Throws WorkFailed.
 void WriteOverlay(const overlay::OverlayInput& input, const std::filesystem::path& file);

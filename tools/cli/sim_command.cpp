@@ -36,9 +36,8 @@ T OrFail(Result<T, std::string> result) {
   if constexpr (!std::is_void_v<T>) return *std::move(result);
 }
 
-void RenderScene(const RenderArguments& arguments, const StereoCalibration& calibration,
-                 int scene_id, const std::vector<sim::TargetMesh>& targets,
-                 dataset::DatasetWriter& writer) {
+void RenderScene(const RenderArguments& arguments, const StereoCalibration& calibration, int scene_id,
+                 const std::vector<sim::TargetMesh>& targets, dataset::DatasetWriter& writer) {
   sim::VideoConfig config;
   config.seed = arguments.seed + static_cast<std::uint64_t>(scene_id - 1);
   config.calibration = calibration;
@@ -50,8 +49,8 @@ void RenderScene(const RenderArguments& arguments, const StereoCalibration& cali
     const auto sequence = static_cast<std::uint64_t>(i);
     const sim::StereoShot shot = video.Shoot(sequence);
     const dataset::DepthImage depth = sim::ToDepthImage(shot.truth);
-    OrFail(writer.AddFrame(scene_id, sim::ToRecord(i, video.RigAt(sequence), shot.truth),
-                           shot.left.view(), shot.right.view(), depth.view()));
+    OrFail(writer.AddFrame(scene_id, sim::ToRecord(i, video.RigAt(sequence), shot.truth), shot.left.view(),
+                           shot.right.view(), depth.view()));
     std::printf("scene %d frame %d/%d\n", scene_id, i + 1, arguments.frames);
     std::fflush(stdout);
   }
@@ -60,17 +59,15 @@ void RenderScene(const RenderArguments& arguments, const StereoCalibration& cali
 
 void Render(const RenderArguments& arguments) {
   const std::vector<sim::TargetMesh> targets = OrFail(sim::LoadTargetMeshes(arguments.models));
-  const StereoCalibration calibration =
-      arguments.calibration.empty() ? sim::DefaultCalibration()
-                                    : OrFail(dataset::ReadCalibration(arguments.calibration));
-  dataset::DatasetWriter writer =
-      OrFail(dataset::DatasetWriter::Create(arguments.out, calibration));
+  const StereoCalibration calibration = arguments.calibration.empty()
+                                            ? sim::DefaultCalibration()
+                                            : OrFail(dataset::ReadCalibration(arguments.calibration));
+  dataset::DatasetWriter writer = OrFail(dataset::DatasetWriter::Create(arguments.out, calibration));
   OrFail(sim::WriteTargetMeshes(arguments.out, targets));
   for (int scene = 1; scene <= arguments.scenes; ++scene) {
     RenderScene(arguments, calibration, scene, targets, writer);
   }
-  std::printf("wrote %s: %d scenes of %d frames\n", arguments.out.c_str(), arguments.scenes,
-              arguments.frames);
+  std::printf("wrote %s: %d scenes of %d frames\n", arguments.out.c_str(), arguments.scenes, arguments.frames);
 }
 
 }  // namespace
@@ -78,12 +75,11 @@ void Render(const RenderArguments& arguments) {
 void AddSimCommand(CLI::App& app) {
   CLI::App* sim = app.add_subcommand("sim", "Simulated stereo camera");
   sim->require_subcommand(1);
-  CLI::App* render = sim->add_subcommand(
-      "render", "Render kitchen counters with the objects on them as a data set with exact truth");
+  CLI::App* render =
+      sim->add_subcommand("render", "Render kitchen counters with the objects on them as a data set with exact truth");
   const auto arguments = std::make_shared<RenderArguments>();
   render->add_option("--out", arguments->out, "Folder of the new data set")->required();
-  render->add_option("--models", arguments->models, "Folder of meshes (PLY, OBJ, STL; mm)")
-      ->capture_default_str();
+  render->add_option("--models", arguments->models, "Folder of meshes (PLY, OBJ, STL; mm)")->capture_default_str();
   render->add_option("--calibration", arguments->calibration,
                      "calib.yaml of the rig to simulate; none: the simulator's own");
   render->add_option("--frames", arguments->frames, "Frames a scene; the camera moves slowly")

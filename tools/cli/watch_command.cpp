@@ -61,9 +61,7 @@ class TopicSubscription final : public Subscription {
       if (!info.valid_data) continue;  // only says that a writer has gone
       ++printed;
       // Text may come from another vendor's program: replace what is not UTF-8 instead of failing.
-      Print(json ? ToJson(message_->value)
-                           .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                       "\n"
+      Print(json ? ToJson(message_->value).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
                  : ToText(message_->value));
     }
     return printed;
@@ -77,12 +75,10 @@ class TopicSubscription final : public Subscription {
 std::vector<std::unique_ptr<Subscription>> Subscribe(const Bus& bus, const std::string& topic) {
   std::vector<std::unique_ptr<Subscription>> subscriptions;
   if (topic == "detections") {
-    subscriptions.push_back(
-        std::make_unique<TopicSubscription<DetectionsMessage>>(bus, kDetectionsTopic));
+    subscriptions.push_back(std::make_unique<TopicSubscription<DetectionsMessage>>(bus, kDetectionsTopic));
   }
   if (topic.empty() || topic == "recognition") {
-    subscriptions.push_back(
-        std::make_unique<TopicSubscription<RecognitionMessage>>(bus, kRecognitionTopic));
+    subscriptions.push_back(std::make_unique<TopicSubscription<RecognitionMessage>>(bus, kRecognitionTopic));
   }
   if (topic.empty() || topic == "health") {
     subscriptions.push_back(std::make_unique<TopicSubscription<HealthMessage>>(bus, kHealthTopic));
@@ -109,16 +105,14 @@ void Watch(const WatchOptions& options) {
     std::uint64_t printed = 0;
     for (const auto& subscription : subscriptions) {
       const bool limited = subscription->counts && wanted > 0;
-      const std::uint64_t limit =
-          limited ? wanted - counted : std::numeric_limits<std::uint64_t>::max();
+      const std::uint64_t limit = limited ? wanted - counted : std::numeric_limits<std::uint64_t>::max();
       const std::uint64_t news = subscription->PrintNew(options.json, limit);
       printed += news;
       if (subscription->counts) counted += news;
     }
     const Clock::time_point now = Clock::now();
     if (printed > 0) last = now;
-    if (options.timeout_s > 0 && Seconds(now - last).count() > options.timeout_s)
-      FailForSilence(options);
+    if (options.timeout_s > 0 && Seconds(now - last).count() > options.timeout_s) FailForSilence(options);
     // A person or a test reads this: waking 200 times a second is soon enough and needs no wait
     // set.
     if (printed == 0) dds_sleepfor(DDS_MSECS(5));
@@ -133,19 +127,15 @@ void AddWatchCommand(CLI::App& app) {
   command->add_option("--topic", options->topic, "only this one; default: recognition and health")
       ->check(CLI::IsMember({"detections", "recognition", "health"}));
   command->add_flag("--once", options->once, "end after the first message");
-  command->add_option("--frames", options->frames,
-                      "end after that many messages (health counts only when chosen)");
+  command->add_option("--frames", options->frames, "end after that many messages (health counts only when chosen)");
   command->add_flag("--json", options->json, "one JSON object a line");
-  command
-      ->add_option("--timeout", options->timeout_s,
-                   "fail after that many seconds without a message; 0: never")
+  command->add_option("--timeout", options->timeout_s, "fail after that many seconds without a message; 0: never")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--domain", options->domain, "DDS domain")
       ->check(CLI::Range(0u, kMaxDomain))
       ->capture_default_str();
-  command->add_flag("--loopback", options->loopback,
-                    "only this machine, as dds.loopback of wireposed");
+  command->add_flag("--loopback", options->loopback, "only this machine, as dds.loopback of wireposed");
   command->callback([options] { Watch(*options); });
 }
 

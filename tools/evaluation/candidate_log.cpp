@@ -42,10 +42,11 @@ void CandidateLog::Add(const FrameView& view) {
       visible = truth.visib_fract;
     }
     const Evidence& e = candidate.evidence;
-    out_ << fmt::format("{},{},{},{:.4f},{:.3f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.1f},{},{},{:.4f},{}\n",
-                        view.entry.scene_id, view.entry.im_id, model.view.id, error, visible, candidate.score, e.edges, e.contrast,
-                        e.faces, e.overrun, e.support, e.inside, e.visible_px, e.supported_edges, e.supported_faces,
-                        candidate.pose.rms_px, candidate.pose.inliers);
+    out_ << fmt::format(
+        "{},{},{},{:.4f},{:.3f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.1f},{},{},{:.4f},{}\n",
+        view.entry.scene_id, view.entry.im_id, model.view.id, error, visible, candidate.score, e.edges, e.contrast,
+        e.faces, e.overrun, e.support, e.inside, e.visible_px, e.supported_edges, e.supported_faces,
+        candidate.pose.rms_px, candidate.pose.inliers);
   }
 }
 

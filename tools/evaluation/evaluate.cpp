@@ -27,15 +27,13 @@ Outcome SetUp(const dataset::Dataset& dataset, const ModelSet& models, Recognize
   recognizer.ClearModels();
   for (const ModelView& model : models.views) {
     const RecognizerError refused = recognizer.AddModel(model);
-    if (refused != RecognizerError::kOk)
-      return Error(fmt::format("model {}: {}", model.id, Describe(refused)));
+    if (refused != RecognizerError::kOk) return Error(fmt::format("model {}: {}", model.id, Describe(refused)));
   }
   return {};
 }
 
 // A detection of an object that the truth does not list could only ever be a false alarm.
-Outcome CheckIds(const ModelSet& models, const GroundTruth& truth,
-                 const std::filesystem::path& dataset) {
+Outcome CheckIds(const ModelSet& models, const GroundTruth& truth, const std::filesystem::path& dataset) {
   for (const ModelView& model : models.views) {
     if (truth.objects.contains(static_cast<int>(model.id))) continue;
     return Error(
@@ -50,16 +48,13 @@ Result<dataset::GrayImage, std::string> ReadImage(const std::filesystem::path& f
                                                   const StereoCalibration& calibration) {
   auto image = dataset::ReadGrayPng(file);
   if (!image) return Error(image.error().message);
-  if (image->width == calibration.width && image->height == calibration.height)
-    return std::move(*image);
-  return Error(fmt::format(
-      "{}: {}x{} pixels, but calib.yaml says {}x{}; use images of the calibrated size",
-      file.string(), image->width, image->height, calibration.width, calibration.height));
+  if (image->width == calibration.width && image->height == calibration.height) return std::move(*image);
+  return Error(fmt::format("{}: {}x{} pixels, but calib.yaml says {}x{}; use images of the calibrated size",
+                           file.string(), image->width, image->height, calibration.width, calibration.height));
 }
 
-Outcome ProcessFrame(const dataset::FrameEntry& entry, const StereoCalibration& calibration,
-                     Recognizer& recognizer, StageClock& clock, RecognitionResult& result,
-                     FrameTimes& times) {
+Outcome ProcessFrame(const dataset::FrameEntry& entry, const StereoCalibration& calibration, Recognizer& recognizer,
+                     StageClock& clock, RecognitionResult& result, FrameTimes& times) {
   const auto left = ReadImage(entry.left_path, calibration);
   if (!left) return Error(left.error());
   const auto right = ReadImage(entry.right_path, calibration);
@@ -71,8 +66,8 @@ Outcome ProcessFrame(const dataset::FrameEntry& entry, const StereoCalibration& 
   return Error(fmt::format("{}: {}", entry.left_path.string(), Describe(error)));
 }
 
-void Record(const dataset::FrameEntry& entry, const RecognitionResult& result,
-            const FrameTimes& times, double min_score, Evaluation& evaluation) {
+void Record(const dataset::FrameEntry& entry, const RecognitionResult& result, const FrameTimes& times,
+            double min_score, Evaluation& evaluation) {
   FrameRecord& record = evaluation.frames.emplace_back();
   record.scene_id = entry.scene_id;
   record.image_id = entry.im_id;
@@ -124,8 +119,7 @@ Estimate ToEstimate(const Detection& detection, const dataset::FrameEntry& entry
   return e;
 }
 
-Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options,
-                                         const FrameObserver& observer) {
+Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const FrameObserver& observer) {
   const auto inputs = ReadInputs(options);
   if (!inputs) return Error(inputs.error());
   const auto& [set, truth, models] = *inputs;
@@ -137,13 +131,11 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options,
   RecognitionResult result;
   for (std::size_t i = 0; i < set.frames.size(); ++i) {
     FrameTimes times;
-    const Outcome done =
-        ProcessFrame(set.frames[i], set.calibration, recognizer, clock, result, times);
+    const Outcome done = ProcessFrame(set.frames[i], set.calibration, recognizer, clock, result, times);
     if (!done) return Error(done.error());
     Record(set.frames[i], result, times, options.min_score, evaluation);
     if (!observer) continue;
-    const Outcome seen =
-        observer({i, set.frames.size(), set.frames[i], recognizer, models, result});
+    const Outcome seen = observer({i, set.frames.size(), set.frames[i], recognizer, models, result});
     if (!seen) return Error(seen.error());
   }
   evaluation.metrics = ComputeMetrics(truth, evaluation.estimates);

@@ -57,8 +57,7 @@ Estimate ToEstimate(const Detection& detection, const dataset::FrameEntry& entry
 // reentrant. Stops at the first error, one line that names file, place and remedy: calibration,
 // model, image or truth missing or malformed, an image that is not of the calibrated size, a model
 // id that the data set does not know, or the observer's own. `observer` may be empty.
-Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options,
-                                         const FrameObserver& observer);
+Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const FrameObserver& observer);
 
 }  // namespace wirepose::evaluation
 

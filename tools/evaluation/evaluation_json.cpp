@@ -48,8 +48,7 @@ Json SpreadOf(const std::vector<FrameRecord>& frames, Pick pick) {
 Json StagesToJson(const std::vector<FrameRecord>& frames) {
   Json json;
   for (std::size_t s = 0; s < kStageCount; ++s) {
-    json[StageName(static_cast<Stage>(s))] =
-        SpreadOf(frames, [s](const FrameTimes& t) { return t.stages[s]; });
+    json[StageName(static_cast<Stage>(s))] = SpreadOf(frames, [s](const FrameTimes& t) { return t.stages[s]; });
   }
   json["frame"] = SpreadOf(frames, [](const FrameTimes& t) { return t.total; });
   return json;
@@ -77,15 +76,13 @@ Json ListsToJson(const std::vector<FrameRecord>& frames) {
 }
 
 Json FrameToJson(const FrameRecord& f) {
-  Json json{{"scene_id", f.scene_id},       {"im_id", f.image_id},
-            {"time_s", f.times.total.wall}, {"cpu_s", f.times.total.cpu},
-            {"detections", f.detections},   {"budget_hit", f.budget_hit}};
+  Json json{{"scene_id", f.scene_id},     {"im_id", f.image_id},        {"time_s", f.times.total.wall},
+            {"cpu_s", f.times.total.cpu}, {"detections", f.detections}, {"budget_hit", f.budget_hit}};
   for (std::size_t s = 0; s < kStageCount; ++s) {
     json["stages_ms"][StageName(static_cast<Stage>(s))] = f.times.stages[s].wall * kMsPerSecond;
   }
   for (const auto& [name, use] : kLists) {
-    json["lists"][name] = {{"used", (f.statistics.*use).used},
-                           {"dropped", (f.statistics.*use).dropped}};
+    json["lists"][name] = {{"used", (f.statistics.*use).used}, {"dropped", (f.statistics.*use).dropped}};
   }
   return json;
 }

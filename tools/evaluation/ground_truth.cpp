@@ -25,14 +25,12 @@ struct BadData : std::runtime_error {
 Json ReadJson(const fs::path& file) {
   std::ifstream in(file);
   if (!in) {
-    throw BadData(
-        fmt::format("{}: cannot be opened; the data set layout asks for it", file.string()));
+    throw BadData(fmt::format("{}: cannot be opened; the data set layout asks for it", file.string()));
   }
   try {
     return Json::parse(in);
   } catch (const Json::parse_error& e) {
-    throw BadData(fmt::format("{}: byte {}: not valid JSON; repair or export it again",
-                              file.string(), e.byte));
+    throw BadData(fmt::format("{}: byte {}: not valid JSON; repair or export it again", file.string(), e.byte));
   }
 }
 
@@ -44,9 +42,7 @@ struct Place {
   [[noreturn]] void Fail(const std::string& what) const {
     throw BadData(fmt::format("{}: {}; see the BOP data set format", where, what));
   }
-  [[nodiscard]] bool Has(const std::string& key) const {
-    return value.is_object() && value.contains(key);
-  }
+  [[nodiscard]] bool Has(const std::string& key) const { return value.is_object() && value.contains(key); }
   [[nodiscard]] Place At(const std::string& key) const {
     if (!Has(key)) Fail(fmt::format("'{}' is missing", key));
     return {value.at(key), where + ": " + key};
@@ -56,8 +52,7 @@ struct Place {
     return value.get<double>();
   }
   [[nodiscard]] std::vector<double> Numbers(std::size_t count) const {
-    if (!value.is_array() || value.size() != count)
-      Fail(fmt::format("{} numbers are expected", count));
+    if (!value.is_array() || value.size() != count) Fail(fmt::format("{} numbers are expected", count));
     std::vector<double> out;
     for (const Json& n : value) {
       if (!n.is_number()) Fail(fmt::format("{} numbers are expected", count));
@@ -104,8 +99,7 @@ ObjectTruth ReadObject(const Place& info, const fs::path& mesh) {
     const Place list = info.At("symmetries_continuous");
     for (const Json& s : list.value) {
       const Place p{s, list.where};
-      continuous.push_back(
-          {p.At("axis").Vector(), p.Has("offset") ? p.At("offset").Vector() : Vector3d::Zero()});
+      continuous.push_back({p.At("axis").Vector(), p.Has("offset") ? p.At("offset").Vector() : Vector3d::Zero()});
     }
   }
   object.symmetries = EnumerateSymmetries(discrete, continuous);
@@ -119,8 +113,7 @@ ObjectTruth ReadObject(const Place& info, const fs::path& mesh) {
 std::map<int, ObjectTruth> ReadObjects(const fs::path& models) {
   const fs::path file = models / "models_info.json";
   const Json json = ReadJson(file);
-  if (!json.is_object() || json.empty())
-    throw BadData(file.string() + ": no objects; list each by its id");
+  if (!json.is_object() || json.empty()) throw BadData(file.string() + ": no objects; list each by its id");
   std::map<int, ObjectTruth> objects;
   for (const auto& [key, info] : json.items()) {
     const int id = IdOf(key, file.string());
@@ -151,8 +144,7 @@ std::vector<InstanceTruth> ReadInstances(const Place& gt, const std::optional<Pl
     InstanceTruth& instance = out.emplace_back();
     instance.object_id = static_cast<int>(p.At("obj_id").Number());
     if (!objects.contains(instance.object_id)) {
-      p.Fail(fmt::format("unknown model id {}: models/models_info.json has no such object",
-                         instance.object_id));
+      p.Fail(fmt::format("unknown model id {}: models/models_info.json has no such object", instance.object_id));
     }
     instance.T_camera_model = {p.At("cam_R_m2c").Matrix(), p.At("cam_t_m2c").Vector()};
     if (!info) continue;
@@ -164,19 +156,15 @@ std::vector<InstanceTruth> ReadInstances(const Place& gt, const std::optional<Pl
 
 void ReadScene(const fs::path& scene, int scene_id, GroundTruth& truth) {
   // A stereo scene whose camera file is lost must be told so by that file's name.
-  const bool stereo =
-      fs::exists(scene / "gray_cam1") || fs::exists(scene / "scene_camera_cam1.json");
+  const bool stereo = fs::exists(scene / "gray_cam1") || fs::exists(scene / "scene_camera_cam1.json");
   const std::string suffix = stereo ? "_cam1" : "";
   const SceneFiles files(scene, suffix);
   const Json cameras = ReadJson(files.camera);
   const Json gts = ReadJson(files.gt);
   const bool has_info = fs::exists(files.gt_info);
   const Json infos = has_info ? ReadJson(files.gt_info) : Json::object();
-  if (!cameras.is_object())
-    throw BadData(files.camera.string() + ": an object keyed by image id is expected");
-  const auto where = [](const fs::path& f, const std::string& key) {
-    return f.string() + ": image " + key;
-  };
+  if (!cameras.is_object()) throw BadData(files.camera.string() + ": an object keyed by image id is expected");
+  const auto where = [](const fs::path& f, const std::string& key) { return f.string() + ": image " + key; };
   for (const auto& [key, camera] : cameras.items()) {
     FrameTruth& frame = truth.frames.emplace_back();
     frame.scene_id = scene_id;
@@ -185,8 +173,7 @@ void ReadScene(const fs::path& scene, int scene_id, GroundTruth& truth) {
     if (!gts.contains(key)) continue;
     std::optional<Place> info;
     if (has_info) {
-      if (!infos.contains(key))
-        throw BadData(where(files.gt_info, key) + ": missing; scene_gt has it");
+      if (!infos.contains(key)) throw BadData(where(files.gt_info, key) + ": missing; scene_gt has it");
       info.emplace(Place{infos.at(key), where(files.gt_info, key)});
     }
     frame.instances = ReadInstances({gts.at(key), where(files.gt, key)}, info, truth.objects);
@@ -200,15 +187,13 @@ GroundTruth ReadAll(const fs::path& dataset) {
   }
   truth.objects = ReadObjects(dataset / "models");
   const fs::path test = dataset / "test";
-  if (!fs::is_directory(test))
-    throw BadData(test.string() + ": no such folder; scenes are expected in it");
+  if (!fs::is_directory(test)) throw BadData(test.string() + ": no such folder; scenes are expected in it");
   for (const auto& entry : fs::directory_iterator(test)) {
     const std::optional<int> id = ParseId(entry.path().filename().string());
     if (id && entry.is_directory()) ReadScene(entry.path(), *id, truth);
   }
   if (truth.frames.empty()) throw BadData(test.string() + ": no frames; the data set is empty");
-  std::ranges::sort(truth.frames, {},
-                    [](const FrameTruth& f) { return std::pair(f.scene_id, f.image_id); });
+  std::ranges::sort(truth.frames, {}, [](const FrameTruth& f) { return std::pair(f.scene_id, f.image_id); });
   const fs::path camera = dataset / "camera_cam1.json";
   if (fs::exists(camera)) {
     const Json json = ReadJson(camera);
@@ -225,15 +210,13 @@ Result<GroundTruth, std::string> ReadGroundTruth(const fs::path& dataset) {
   } catch (const BadData& e) {
     return unexpected<std::string>(e.what());
   } catch (const fs::filesystem_error& e) {
-    return unexpected<std::string>(fmt::format("{}: cannot be read ({}); check its permissions",
-                                               e.path1().string(), e.code().message()));
+    return unexpected<std::string>(
+        fmt::format("{}: cannot be read ({}); check its permissions", e.path1().string(), e.code().message()));
   }
 }
 
 void KeepFrames(const std::set<std::pair<int, int>>& listed, GroundTruth& truth) {
-  std::erase_if(truth.frames, [&](const FrameTruth& f) {
-    return !listed.contains({f.scene_id, f.image_id});
-  });
+  std::erase_if(truth.frames, [&](const FrameTruth& f) { return !listed.contains({f.scene_id, f.image_id}); });
 }
 
 }  // namespace wirepose::evaluation

@@ -22,9 +22,7 @@ struct RigidMm {
 
   [[nodiscard]] Vector3d operator*(const Vector3d& p_mm) const { return R * p_mm + t_mm; }
   // T_a_c = T_a_b * T_b_c.
-  [[nodiscard]] RigidMm operator*(const RigidMm& other) const {
-    return {R * other.R, R * other.t_mm + t_mm};
-  }
+  [[nodiscard]] RigidMm operator*(const RigidMm& other) const { return {R * other.R, R * other.t_mm + t_mm}; }
 };
 
 // One known object. `symmetries` map the object onto itself; the first one is the identity.

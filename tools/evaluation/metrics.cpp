@@ -19,8 +19,7 @@ using Match = std::vector<std::optional<std::size_t>>;
 struct Encounter {
   const FrameTruth* frame = nullptr;
   int object_id = 0;
-  const ObjectTruth* object =
-      nullptr;  // null: detections of an object that the data set does not know
+  const ObjectTruth* object = nullptr;  // null: detections of an object that the data set does not know
   std::vector<const InstanceTruth*> instances;
   std::vector<bool> counts;  // by instance
   std::vector<const Estimate*> detections;
@@ -28,8 +27,8 @@ struct Encounter {
 };
 
 // Errors of `rows` (detections) by `columns` (instances).
-ErrorTable Select(const Encounter& e, const std::vector<std::size_t>& rows,
-                  const std::vector<std::size_t>& columns, double PoseError::*field) {
+ErrorTable Select(const Encounter& e, const std::vector<std::size_t>& rows, const std::vector<std::size_t>& columns,
+                  double PoseError::*field) {
   ErrorTable table;
   for (std::size_t i : rows) {
     std::vector<double>& row = table.emplace_back();
@@ -68,8 +67,7 @@ Encounter Meet(const FrameTruth& frame, int object_id, const ObjectTruth* object
 
 // BOP'19 localisation recall: of the n best estimates, n being the number of instances; estimates
 // that were matched to instances that do not count are left out.
-void CountThresholdHits(const Encounter& e, const Match& match, int image_width_px,
-                        ObjectScore& score) {
+void CountThresholdHits(const Encounter& e, const Match& match, int image_width_px, ObjectScore& score) {
   std::vector<std::size_t> eligible;
   for (std::size_t j : Indices(e.instances.size())) {
     if (e.counts[j]) eligible.push_back(j);
@@ -104,8 +102,7 @@ HitCount* VisibilityBin(ObjectScore& score, double visible_fraction) {
 
 std::optional<double> BestMssd(const Encounter& e, std::size_t instance) {
   std::optional<double> best;
-  for (const auto& row : e.errors)
-    best = std::min(best.value_or(row[instance].mssd_mm), row[instance].mssd_mm);
+  for (const auto& row : e.errors) best = std::min(best.value_or(row[instance].mssd_mm), row[instance].mssd_mm);
   return best;
 }
 
@@ -168,8 +165,7 @@ int CountDetections(const Encounter& e, const Match& match, ObjectScore& score, 
     }
     ++false_positives;
     const Estimate& d = *e.detections[i];
-    metrics.false_positives.push_back(
-        {d.scene_id, d.image_id, d.object_id, d.score, d.T_camera_model.t_mm});
+    metrics.false_positives.push_back({d.scene_id, d.image_id, d.object_id, d.score, d.T_camera_model.t_mm});
   }
   score.false_positives += false_positives;
   return false_positives;
@@ -178,8 +174,7 @@ int CountDetections(const Encounter& e, const Match& match, ObjectScore& score, 
 int CountEncounter(const Encounter& e, int image_width_px, Metrics& metrics) {
   ObjectScore& score = metrics.per_object[e.object_id];
   const double hit_mm = kHitShareOfDiameter * (e.object != nullptr ? e.object->diameter_mm : 1);
-  const ErrorTable mssd =
-      Select(e, Indices(e.detections.size()), Indices(e.instances.size()), &PoseError::mssd_mm);
+  const ErrorTable mssd = Select(e, Indices(e.detections.size()), Indices(e.instances.size()), &PoseError::mssd_mm);
   const Match match = MatchGreedily(mssd, hit_mm, e.counts);
   CountInstances(e, match, score, metrics);
   CountThresholdHits(e, match, image_width_px, score);
@@ -188,13 +183,11 @@ int CountEncounter(const Encounter& e, int image_width_px, Metrics& metrics) {
 
 using EstimatesByKey = std::map<std::tuple<int, int, int>, std::vector<const Estimate*>>;
 
-void CountFrame(const GroundTruth& truth, const FrameTruth& frame, const EstimatesByKey& estimates,
-                Metrics& metrics) {
+void CountFrame(const GroundTruth& truth, const FrameTruth& frame, const EstimatesByKey& estimates, Metrics& metrics) {
   std::set<int> ids;
   for (const auto& [id, object] : truth.objects) ids.insert(id);
   for (const auto& [key, list] : estimates) {
-    if (std::get<0>(key) == frame.scene_id && std::get<1>(key) == frame.image_id)
-      ids.insert(std::get<2>(key));
+    if (std::get<0>(key) == frame.scene_id && std::get<1>(key) == frame.image_id) ids.insert(std::get<2>(key));
   }
   int false_positives = 0;
   for (int id : ids) {
@@ -221,14 +214,12 @@ RowTimes MeasureRowTimes(const GroundTruth& truth, std::span<const Estimate> est
   }
   std::vector<double> times;
   for (const auto& [key, time_s] : by_frame) times.push_back(time_s);
-  return {static_cast<int>(times.size()), Percentile(times, 0.5), Percentile(times, 0.99),
-          Percentile(times, 1)};
+  return {static_cast<int>(times.size()), Percentile(times, 0.5), Percentile(times, 0.99), Percentile(times, 1)};
 }
 
 std::optional<double> MeanShare(const std::array<int, kThresholdCount>& hits, int instances) {
   if (instances == 0) return std::nullopt;
-  const double mean =
-      std::accumulate(hits.begin(), hits.end(), 0.0) / static_cast<double>(hits.size());
+  const double mean = std::accumulate(hits.begin(), hits.end(), 0.0) / static_cast<double>(hits.size());
   return mean / instances;
 }
 
@@ -250,13 +241,9 @@ std::optional<double> ObjectScore::Precision() const {
   return static_cast<double>(all.hits) / decided;
 }
 
-std::optional<double> ObjectScore::AverageRecallMssd() const {
-  return MeanShare(mssd_hits, all.instances);
-}
+std::optional<double> ObjectScore::AverageRecallMssd() const { return MeanShare(mssd_hits, all.instances); }
 
-std::optional<double> ObjectScore::AverageRecallMspd() const {
-  return MeanShare(mspd_hits, all.instances);
-}
+std::optional<double> ObjectScore::AverageRecallMspd() const { return MeanShare(mspd_hits, all.instances); }
 
 void ObjectScore::Add(const ObjectScore& other) {
   const auto add = [](HitCount& a, const HitCount& b) {
@@ -264,8 +251,7 @@ void ObjectScore::Add(const ObjectScore& other) {
     a.hits += b.hits;
   };
   add(all, other.all);
-  for (std::size_t b = 0; b < by_visibility.size(); ++b)
-    add(by_visibility[b], other.by_visibility[b]);
+  for (std::size_t b = 0; b < by_visibility.size(); ++b) add(by_visibility[b], other.by_visibility[b]);
   false_positives += other.false_positives;
   dont_care += other.dont_care;
   for (std::size_t k = 0; k < kThresholdCount; ++k) {
@@ -286,9 +272,8 @@ std::optional<double> Percentile(std::vector<double> values, double share) {
   return std::lerp(values[below], values[above], at - static_cast<double>(below));
 }
 
-std::vector<std::optional<std::size_t>> MatchGreedily(
-    const std::vector<std::vector<double>>& errors, double threshold,
-    const std::vector<bool>& counts) {
+std::vector<std::optional<std::size_t>> MatchGreedily(const std::vector<std::vector<double>>& errors, double threshold,
+                                                      const std::vector<bool>& counts) {
   Match match;
   std::vector<bool> used(counts.size(), false);
   for (const std::vector<double>& row : errors) {
@@ -304,8 +289,7 @@ std::vector<std::optional<std::size_t>> MatchGreedily(
   return match;
 }
 
-Metrics ComputeMetrics(const GroundTruth& truth, std::span<const Estimate> estimates,
-                       const MetricsOptions& options) {
+Metrics ComputeMetrics(const GroundTruth& truth, std::span<const Estimate> estimates, const MetricsOptions& options) {
   Metrics metrics;
   metrics.options = options;
   metrics.frames = static_cast<int>(truth.frames.size());

@@ -36,8 +36,7 @@ struct MetricsOptions {
 
 inline constexpr double kHitShareOfDiameter = 0.1;
 inline constexpr std::size_t kThresholdCount = 10;  // MSSD 0.05..0.5 d, MSPD 5..50 px * width / 640
-inline constexpr std::array<std::array<double, 2>, 3> kVisibilityBins{
-    {{0.4, 0.6}, {0.6, 0.8}, {0.8, 1.0001}}};
+inline constexpr std::array<std::array<double, 2>, 3> kVisibilityBins{{{0.4, 0.6}, {0.6, 0.8}, {0.8, 1.0001}}};
 
 struct HitCount {
   int instances = 0;
@@ -77,8 +76,7 @@ struct InstanceOutcome {
   double score = 0;
   double translation_mm = 0;
   double rotation_deg = 0;
-  std::optional<double>
-      best_mssd_mm;  // of all detections of the object in the frame, or of the hit; empty: none
+  std::optional<double> best_mssd_mm;  // of all detections of the object in the frame, or of the hit; empty: none
 };
 
 struct FalsePositive {
@@ -120,9 +118,8 @@ std::optional<double> Percentile(std::vector<double> values, double share);
 // For each detection, in the given order, the instance it takes: the nearest free one with error <
 // threshold, those that count before those that do not. errors[i][j] of detection i to instance j;
 // `counts[j]` false: don't care.
-std::vector<std::optional<std::size_t>> MatchGreedily(
-    const std::vector<std::vector<double>>& errors, double threshold,
-    const std::vector<bool>& counts);
+std::vector<std::optional<std::size_t>> MatchGreedily(const std::vector<std::vector<double>>& errors, double threshold,
+                                                      const std::vector<bool>& counts);
 
 }  // namespace wirepose::evaluation
 

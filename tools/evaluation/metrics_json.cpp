@@ -17,10 +17,8 @@ struct CoverageLevel {
   const char* name;
   double quantile;
 };
-constexpr CoverageLevel kCoverage[] = {{"50", 5.348120627447122},
-                                       {"90", 10.644640675668422},
-                                       {"95", 12.591587243743977},
-                                       {"99", 16.811893829770927}};
+constexpr CoverageLevel kCoverage[] = {
+    {"50", 5.348120627447122}, {"90", 10.644640675668422}, {"95", 12.591587243743977}, {"99", 16.811893829770927}};
 
 // Normalised estimation errors of the true positives: the mean should be 6 and the coverage what
 // its name says.
@@ -30,12 +28,10 @@ Json NeesToJson(const std::vector<double>& values) {
   if (values.empty()) return json;
   const auto invalid = std::ranges::count_if(values, [](double v) { return v < 0; });
   json["covariance_not_positive"] = invalid;
-  json["mean"] =
-      std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  json["mean"] = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   json["median"] = OrNull(Percentile(values, 0.5));
   for (const CoverageLevel& level : kCoverage) {
-    const auto inside =
-        std::ranges::count_if(values, [&](double v) { return v >= 0 && v <= level.quantile; });
+    const auto inside = std::ranges::count_if(values, [&](double v) { return v >= 0 && v <= level.quantile; });
     json["coverage"][level.name] = static_cast<double>(inside) / static_cast<double>(values.size());
   }
   return json;
@@ -90,9 +86,7 @@ nlohmann::ordered_json ToJson(const Metrics& m) {
   json["frames"] = m.frames;
   json["negative_frames"] = m.negative_frames;
   json["fp_per_negative_frame"] =
-      m.negative_frames > 0
-          ? Json(static_cast<double>(m.negative_false_positives) / m.negative_frames)
-          : Json(nullptr);
+      m.negative_frames > 0 ? Json(static_cast<double>(m.negative_false_positives) / m.negative_frames) : Json(nullptr);
   json["rows"] = m.rows;
   json["min_visib"] = m.options.min_visible_fraction;
   json["time"] = {{"frames_timed", m.time.frames},
@@ -100,19 +94,16 @@ nlohmann::ordered_json ToJson(const Metrics& m) {
                   {"p99_s", OrNull(m.time.p99_s)},
                   {"max_s", OrNull(m.time.max_s)}};
   json["per_object"] = Json::object();
-  for (const auto& [id, score] : m.per_object)
-    json["per_object"][std::to_string(id)] = ScoreToJson(score, m.frames);
+  for (const auto& [id, score] : m.per_object) json["per_object"][std::to_string(id)] = ScoreToJson(score, m.frames);
   json["per_scene"] = Json::object();
   for (const auto& [id, count] : m.per_scene) {
-    json["per_scene"][std::to_string(id)] = {{"n", count.instances},
-                                             {"recall", OrNull(count.Recall())}};
+    json["per_scene"][std::to_string(id)] = {{"n", count.instances}, {"recall", OrNull(count.Recall())}};
   }
   json["total"] = ScoreToJson(m.total, m.frames);
   json["instances"] = Json::array();
   for (const InstanceOutcome& o : m.instances) json["instances"].push_back(OutcomeToJson(o));
   json["false_positives"] = Json::array();
-  for (const FalsePositive& f : m.false_positives)
-    json["false_positives"].push_back(FalsePositiveToJson(f));
+  for (const FalsePositive& f : m.false_positives) json["false_positives"].push_back(FalsePositiveToJson(f));
   return json;
 }
 

@@ -37,8 +37,8 @@ bool IsWanted(int id, const std::vector<int>& wanted) {
   return wanted.empty() || std::ranges::find(wanted, id) != wanted.end();
 }
 
-Result<std::vector<tools::CompiledModel>, std::string> CompileMeshes(
-    const fs::path& folder, const std::vector<int>& wanted) {
+Result<std::vector<tools::CompiledModel>, std::string> CompileMeshes(const fs::path& folder,
+                                                                     const std::vector<int>& wanted) {
   std::vector<tools::CompiledModel> out;
   for (const fs::path& mesh : FilesIn(folder, ".ply")) {
     const std::optional<int> id = IdInName(mesh);
@@ -55,8 +55,7 @@ Result<std::vector<tools::CompiledModel>, std::string> CompileMeshes(
 Result<std::vector<tools::CompiledModel>, std::string> ReadFiles(const fs::path& models,
                                                                  const std::vector<int>& wanted) {
   std::vector<tools::CompiledModel> out;
-  const auto files =
-      fs::is_directory(models) ? FilesIn(models, ".wpm") : std::vector<fs::path>{models};
+  const auto files = fs::is_directory(models) ? FilesIn(models, ".wpm") : std::vector<fs::path>{models};
   for (const fs::path& file : files) {
     auto model = tools::ReadModelFile(file);
     if (!model) return unexpected<std::string>(model.error());
@@ -84,14 +83,12 @@ Result<ModelSet, std::string> LoadModelSet(const fs::path& dataset, const fs::pa
   for (int id : object_ids) {
     if (set.Find(static_cast<std::uint32_t>(id)) != nullptr) continue;
     return unexpected<std::string>(fmt::format(
-        "{}: unknown model id {}: no model there has it; choose one that is there or build it",
-        source.string(), id));
+        "{}: unknown model id {}: no model there has it; choose one that is there or build it", source.string(), id));
   }
   if (!set.views.empty()) return set;
-  return unexpected<std::string>(fmt::format("{}: no models; {}", source.string(),
-                                             models.empty()
-                                                 ? "obj_00000N.ply files are expected"
-                                                 : "build some with 'wirepose model build'"));
+  return unexpected<std::string>(
+      fmt::format("{}: no models; {}", source.string(),
+                  models.empty() ? "obj_00000N.ply files are expected" : "build some with 'wirepose model build'"));
 }
 
 }  // namespace wirepose::evaluation

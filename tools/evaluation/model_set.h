@@ -24,8 +24,7 @@ struct ModelSet {
 // With `models` a .wpm file or a folder of them, reads these; with an empty path compiles
 // DATASET/models/obj_*.ply. `object_ids`: only these; empty: all. Error, one line: file, place,
 // remedy; an id that no model has is one.
-Result<ModelSet, std::string> LoadModelSet(const std::filesystem::path& dataset,
-                                           const std::filesystem::path& models,
+Result<ModelSet, std::string> LoadModelSet(const std::filesystem::path& dataset, const std::filesystem::path& models,
                                            const std::vector<int>& object_ids);
 
 }  // namespace wirepose::evaluation

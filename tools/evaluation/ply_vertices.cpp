@@ -27,8 +27,8 @@ struct Header {
 };
 
 unexpected<std::string> Fail(const std::filesystem::path& file, const std::string& what) {
-  return unexpected<std::string>(fmt::format(
-      "{}: {}; export the mesh again as ASCII or binary little-endian PLY", file.string(), what));
+  return unexpected<std::string>(
+      fmt::format("{}: {}; export the mesh again as ASCII or binary little-endian PLY", file.string(), what));
 }
 
 // Size in bytes of a scalar type, 0 if PLY knows no such type.
@@ -70,8 +70,7 @@ std::optional<std::array<std::size_t, 3>> FindCoordinates(const Header& header) 
   std::array<std::size_t, 3> at{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::size_t i = 0;
-    while (i < header.properties.size() && header.properties[i].name != std::string(1, "xyz"[axis]))
-      ++i;
+    while (i < header.properties.size() && header.properties[i].name != std::string(1, "xyz"[axis])) ++i;
     if (i == header.properties.size()) return std::nullopt;
     at[axis] = i;
   }
@@ -141,8 +140,7 @@ Result<std::vector<Vector3d>, std::string> ReadPlyVertices(const std::filesystem
   if (!ascii && header->format != "binary_little_endian") {
     return Fail(file, "header: format '" + header->format + "' is not supported");
   }
-  const bool ok =
-      ascii ? ReadAscii(in, *header, *at, vertices) : ReadBinary(in, *header, *at, vertices);
+  const bool ok = ascii ? ReadAscii(in, *header, *at, vertices) : ReadBinary(in, *header, *at, vertices);
   if (!ok) return Fail(file, fmt::format("vertex {}: missing or malformed", vertices.size()));
   for (std::size_t n = 0; n < vertices.size(); ++n) {
     if (!vertices[n].allFinite()) return Fail(file, fmt::format("vertex {}: not finite", n));

@@ -24,8 +24,8 @@ struct Distances {
   double projection_px = 0;  // infinite if any vertex is behind the camera in either pose
 };
 
-Distances LargestDistances(const std::vector<Vector3d>& vertices, const Matrix3d& K,
-                           const RigidMm& a, const RigidMm& b) {
+Distances LargestDistances(const std::vector<Vector3d>& vertices, const Matrix3d& K, const RigidMm& a,
+                           const RigidMm& b) {
   double surface2 = 0;
   double projection2 = 0;
   for (const Vector3d& v : vertices) {
@@ -45,8 +45,7 @@ double AngleDeg(const Matrix3d& R) {
 
 }  // namespace
 
-PoseError MeasurePose(const ObjectTruth& object, const Matrix3d& K, const RigidMm& estimate,
-                      const RigidMm& truth) {
+PoseError MeasurePose(const ObjectTruth& object, const Matrix3d& K, const RigidMm& estimate, const RigidMm& truth) {
   PoseError best;
   best.mssd_mm = kInfinity;
   best.mspd_px = kInfinity;
@@ -80,8 +79,7 @@ std::vector<RigidMm> EnumerateSymmetries(const std::vector<RigidMm>& discrete,
   return all;
 }
 
-double NormalizedErrorSquared(const RigidMm& estimate, const RigidMm& truth,
-                              const Matrix6d& covariance) {
+double NormalizedErrorSquared(const RigidMm& estimate, const RigidMm& truth, const Matrix6d& covariance) {
   constexpr double kMetresPerMm = 1e-3;
   const Eigen::AngleAxisd rotation(Matrix3d(truth.R * estimate.R.transpose()));
   Vector6d twist;

@@ -11,15 +11,12 @@ namespace {
 
 constexpr const char* kHeader = "scene_id,im_id,obj_id,score,R,t,time";
 
-std::string Blanked(std::span<const double> numbers) {
-  return fmt::format("{}", fmt::join(numbers, " "));
-}
+std::string Blanked(std::span<const double> numbers) { return fmt::format("{}", fmt::join(numbers, " ")); }
 
 std::string Row(const Estimate& e) {
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = e.T_camera_model.R;
   return fmt::format("{},{},{},{},{},{},{}\n", e.scene_id, e.image_id, e.object_id, e.score,
-                     Blanked(std::span(R.data(), 9)),
-                     Blanked(std::span(e.T_camera_model.t_mm.data(), 3)), e.time_s);
+                     Blanked(std::span(R.data(), 9)), Blanked(std::span(e.T_camera_model.t_mm.data(), 3)), e.time_s);
 }
 
 template <typename Number>
@@ -56,8 +53,7 @@ std::string ParseRow(const std::vector<std::string>& f, Estimate& e) {
   const bool ids = Parse(f[0], e.scene_id) && Parse(f[1], e.image_id) && Parse(f[2], e.object_id);
   if (!ids || !Parse(f[3], e.score)) return "scene_id, im_id, obj_id and score must be numbers";
   Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R;
-  if (!ParseAll(f[4], std::span(R.data(), 9)) ||
-      !ParseAll(f[5], std::span(e.T_camera_model.t_mm.data(), 3))) {
+  if (!ParseAll(f[4], std::span(R.data(), 9)) || !ParseAll(f[5], std::span(e.T_camera_model.t_mm.data(), 3))) {
     return "R needs 9 and t 3 numbers separated by blanks";
   }
   e.T_camera_model.R = R;
@@ -68,28 +64,24 @@ std::string ParseRow(const std::vector<std::string>& f, Estimate& e) {
 
 }  // namespace
 
-Result<void, std::string> WriteResults(const std::filesystem::path& file,
-                                       std::span<const Estimate> estimates) {
+Result<void, std::string> WriteResults(const std::filesystem::path& file, std::span<const Estimate> estimates) {
   std::ofstream out(file);
   out << kHeader << '\n';
   for (const Estimate& e : estimates) out << Row(e);
   out.close();
   if (out) return {};
-  return unexpected<std::string>(file.string() +
-                                 ": cannot be written; check the folder and the free space");
+  return unexpected<std::string>(file.string() + ": cannot be written; check the folder and the free space");
 }
 
 Result<std::vector<Estimate>, std::string> ReadResults(const std::filesystem::path& file) {
   std::ifstream in(file);
-  if (!in)
-    return unexpected<std::string>(file.string() + ": cannot be opened; give a BOP results file");
+  if (!in) return unexpected<std::string>(file.string() + ": cannot be opened; give a BOP results file");
   std::vector<Estimate> estimates;
   int number = 0;
   for (std::string line; std::getline(in, line);) {
     ++number;
     const auto first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#' || line.compare(first, 8, "scene_id") == 0)
-      continue;
+    if (first == std::string::npos || line[first] == '#' || line.compare(first, 8, "scene_id") == 0) continue;
     Estimate estimate;
     const std::string wrong = ParseRow(Split(line), estimate);
     if (!wrong.empty()) {

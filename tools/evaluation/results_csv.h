@@ -15,8 +15,7 @@ namespace wirepose::evaluation {
 // R row-major, 9 numbers separated by blanks; t 3 numbers in mm; both map the model into the raw
 // left camera. Numbers are written with as many digits as it takes to read back the same double.
 // Replaces the file. Error: one line.
-Result<void, std::string> WriteResults(const std::filesystem::path& file,
-                                       std::span<const Estimate> estimates);
+Result<void, std::string> WriteResults(const std::filesystem::path& file, std::span<const Estimate> estimates);
 
 // Reads what WriteResults writes and other programs' files of that format; `time` may be absent.
 // Error: "file:line: ...".

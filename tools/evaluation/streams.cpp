@@ -42,8 +42,7 @@ InstanceTruth ReadInstance(const Json& json) {
   instance.object_id = json.at("obj_id").get<int>();
   const auto R = Numbers<9>(json.at("R"));
   const auto t = Numbers<3>(json.at("t"));
-  instance.T_camera_model.R =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(R.data());
+  instance.T_camera_model.R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(R.data());
   instance.T_camera_model.t_mm = Eigen::Map<const Vector3d>(t.data()) * kMmPerMetre;
   instance.visible_fraction = json.at("visib_fract").get<double>();
   return instance;
@@ -63,12 +62,9 @@ Estimate ReadDetection(const Json& json, int sequence) {
 
 // Calls `use` with every line's JSON; a line that is not JSON or lacks what `use` asks of it is an
 // error.
-Outcome ForEachLine(const fs::path& file, const char* writer,
-                    const std::function<void(const Json&)>& use) {
+Outcome ForEachLine(const fs::path& file, const char* writer, const std::function<void(const Json&)>& use) {
   std::ifstream in(file);
-  if (!in)
-    return unexpected<std::string>(
-        fmt::format("{}: cannot be opened; {} writes it", file.string(), writer));
+  if (!in) return unexpected<std::string>(fmt::format("{}: cannot be opened; {} writes it", file.string(), writer));
   int number = 0;
   for (std::string line; std::getline(in, line);) {
     ++number;
@@ -76,8 +72,8 @@ Outcome ForEachLine(const fs::path& file, const char* writer,
     try {
       use(Json::parse(line));
     } catch (const Json::exception& e) {
-      return unexpected<std::string>(fmt::format("{}:{}: {}; give the file as {} wrote it",
-                                                 file.string(), number, e.what(), writer));
+      return unexpected<std::string>(
+          fmt::format("{}:{}: {}; give the file as {} wrote it", file.string(), number, e.what(), writer));
     }
   }
   return {};
@@ -87,8 +83,7 @@ Outcome ForEachLine(const fs::path& file, const char* writer,
 
 Result<GroundTruth, std::string> ReadTruthStream(const fs::path& file, const ModelSet& models) {
   GroundTruth truth;
-  for (const ModelView& model : models.views)
-    truth.objects.emplace(static_cast<int>(model.id), FromModel(model));
+  for (const ModelView& model : models.views) truth.objects.emplace(static_cast<int>(model.id), FromModel(model));
   const Outcome read = ForEachLine(file, "the simulated camera", [&](const Json& line) {
     FrameTruth frame;
     frame.image_id = line.at("sequence").get<int>();
@@ -99,8 +94,7 @@ Result<GroundTruth, std::string> ReadTruthStream(const fs::path& file, const Mod
     truth.frames.push_back(std::move(frame));
   });
   if (!read) return unexpected<std::string>(read.error());
-  if (truth.frames.empty())
-    return unexpected<std::string>(file.string() + ": no frames; run the camera longer");
+  if (truth.frames.empty()) return unexpected<std::string>(file.string() + ": no frames; run the camera longer");
   std::ranges::sort(truth.frames, {}, &FrameTruth::image_id);
   return truth;
 }
@@ -111,13 +105,12 @@ Result<Received, std::string> ReadReceivedStream(const fs::path& file) {
     if (!line.contains("frame_sequence")) return;
     const int sequence = line.at("frame_sequence").get<int>();
     received.frames.insert({0, sequence});
-    for (const Json& d : line.at("detections"))
-      received.estimates.push_back(ReadDetection(d, sequence));
+    for (const Json& d : line.at("detections")) received.estimates.push_back(ReadDetection(d, sequence));
   });
   if (!read) return unexpected<std::string>(read.error());
   if (!received.frames.empty()) return received;
-  return unexpected<std::string>(
-      file.string() + ": no message of wirepose/recognition; is wireposed running on this domain?");
+  return unexpected<std::string>(file.string() +
+                                 ": no message of wirepose/recognition; is wireposed running on this domain?");
 }
 
 }  // namespace wirepose::evaluation

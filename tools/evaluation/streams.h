@@ -19,8 +19,7 @@ namespace wirepose::evaluation {
 // "visib_fract"}]}. Gives ground truth of one scene (0) whose image ids are the frames' sequence
 // numbers. The models say size and symmetry; objects that no model has are left out, for the
 // recognizer was not asked for them. Error: "file:line: what; remedy".
-Result<GroundTruth, std::string> ReadTruthStream(const std::filesystem::path& file,
-                                                 const ModelSet& models);
+Result<GroundTruth, std::string> ReadTruthStream(const std::filesystem::path& file, const ModelSet& models);
 
 // What `wirepose watch --json` prints of the topic wirepose/recognition; lines of other topics are
 // passed over.

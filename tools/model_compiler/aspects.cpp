@@ -23,19 +23,16 @@ struct RtcRelease {
 // The mesh in Embree. One thread, robust mode: the same bits on every run.
 class Occluder {
  public:
-  explicit Occluder(const Mesh& mesh)
-      : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_.get())) {
+  explicit Occluder(const mesh::Mesh& mesh) : device_(rtcNewDevice("threads=1")), scene_(rtcNewScene(device_.get())) {
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                3 * sizeof(float), mesh.vertices.size()));
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), mesh.vertices.size()));
     for (const Vector3d& v : mesh.vertices) {
       for (int k = 0; k < 3; ++k) *vertices++ = static_cast<float>(v[k]);
     }
-    auto* indices = static_cast<unsigned*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(unsigned), mesh.triangles.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), mesh.triangles.size()));
     for (const auto& t : mesh.triangles) {
       for (const int v : t) *indices++ = static_cast<unsigned>(v);
     }
@@ -69,9 +66,7 @@ class Occluder {
   std::unique_ptr<std::remove_pointer_t<RTCScene>, RtcRelease> scene_;
 };
 
-bool FacesCamera(const Face& face, const Vector3d& camera) {
-  return face.normal.dot(camera - face.centroid) > 0;
-}
+bool FacesCamera(const Face& face, const Vector3d& camera) { return face.normal.dot(camera - face.centroid) > 0; }
 
 bool CanBeSeen(const std::vector<Face>& faces, const Crease& crease, const Vector3d& camera) {
   if (crease.face[1] == kOpen) return true;
@@ -82,19 +77,17 @@ bool CanBeSeen(const std::vector<Face>& faces, const Crease& crease, const Vecto
 
 std::vector<Vector3d> SphereDirections(int subdivisions) {
   const double g = (1 + std::sqrt(5.0)) / 2;
-  std::vector<Vector3d> points{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
-                               {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
-                               {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+  std::vector<Vector3d> points{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                               {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
   for (Vector3d& p : points) p.normalize();
-  std::vector<std::array<int, 3>> triangles{
-      {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  std::vector<std::array<int, 3>> triangles{{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                            {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                            {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                            {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
   for (int s = 0; s < subdivisions; ++s) {
     std::map<EdgeKey, int> middles;
     const auto middle = [&](int a, int b) {
-      const auto [it, is_new] =
-          middles.try_emplace(MakeEdgeKey(a, b), static_cast<int>(points.size()));
+      const auto [it, is_new] = middles.try_emplace(MakeEdgeKey(a, b), static_cast<int>(points.size()));
       if (is_new) points.push_back((points[a] + points[b]).normalized());
       return it->second;
     };
@@ -108,14 +101,13 @@ std::vector<Vector3d> SphereDirections(int subdivisions) {
   return points;
 }
 
-Vector3d EdgeSample(const Mesh& mesh, const Crease& crease, int k) {
+Vector3d EdgeSample(const mesh::Mesh& mesh, const Crease& crease, int k) {
   const double s = (k + 0.5) / kSamplesPerEdge;
   return (1 - s) * mesh.vertices[crease.vertex[0]] + s * mesh.vertices[crease.vertex[1]];
 }
 
-std::vector<Aspect> TraceAspects(const Mesh& mesh, const std::vector<Face>& faces,
-                                 const std::vector<Crease>& creases, double diameter,
-                                 double tolerance) {
+std::vector<Aspect> TraceAspects(const mesh::Mesh& mesh, const std::vector<Face>& faces,
+                                 const std::vector<Crease>& creases, double diameter, double tolerance) {
   Vector3d low = mesh.vertices.at(0), high = low;
   for (const Vector3d& v : mesh.vertices) {
     low = low.cwiseMin(v);
@@ -130,8 +122,7 @@ std::vector<Aspect> TraceAspects(const Mesh& mesh, const std::vector<Face>& face
     for (std::size_t e = 0; e < creases.size(); ++e) {
       if (!CanBeSeen(faces, creases[e], camera)) continue;
       for (int k = 0; k < kSamplesPerEdge; ++k) {
-        if (!occluder.Blocks(camera, EdgeSample(mesh, creases[e], k), tolerance))
-          ++aspect.visible_samples[e];
+        if (!occluder.Blocks(camera, EdgeSample(mesh, creases[e], k), tolerance)) ++aspect.visible_samples[e];
       }
     }
     aspects.push_back(std::move(aspect));

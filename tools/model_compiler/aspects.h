@@ -23,14 +23,13 @@ struct Aspect {
 std::vector<Eigen::Vector3d> SphereDirections(int subdivisions);
 
 // Sample k of a crease: the middle of the k-th of kSamplesPerEdge equal pieces.
-Eigen::Vector3d EdgeSample(const Mesh& mesh, const Crease& crease, int k);
+Eigen::Vector3d EdgeSample(const mesh::Mesh& mesh, const Crease& crease, int k);
 
 // Traces rays from 162 cameras to samples on every crease. A sample is visible when nothing blocks
 // the ray until `tolerance` [m] before it and a face beside the crease turns to the camera; borders
 // of open meshes are visible from both sides. O(aspects * creases * samples * log triangles).
-std::vector<Aspect> TraceAspects(const Mesh& mesh, const std::vector<Face>& faces,
-                                 const std::vector<Crease>& creases, double diameter,
-                                 double tolerance);
+std::vector<Aspect> TraceAspects(const mesh::Mesh& mesh, const std::vector<Face>& faces,
+                                 const std::vector<Crease>& creases, double diameter, double tolerance);
 
 }  // namespace wirepose::tools
 

@@ -11,9 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-double AngleBetween(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
+double AngleBetween(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 // One mesh edge that is a crease, or part of one.
 struct Piece {
@@ -24,7 +22,7 @@ struct Piece {
 using FacePair = std::pair<int, int>;  // (smaller, larger), or (face, kOpen)
 
 // Is the triangle `t`'s third vertex below the plane of the face that it meets at `edge`?
-bool IsConvex(const Mesh& mesh, const EdgeKey& edge, int t, const Vector3d& other_normal) {
+bool IsConvex(const mesh::Mesh& mesh, const EdgeKey& edge, int t, const Vector3d& other_normal) {
   for (const int v : mesh.triangles[t]) {
     if (v == edge.first || v == edge.second) continue;
     return other_normal.dot(mesh.vertices[v] - mesh.vertices[edge.first]) < 0;
@@ -33,8 +31,7 @@ bool IsConvex(const Mesh& mesh, const EdgeKey& edge, int t, const Vector3d& othe
 }
 
 // The pieces of all creases, grouped by the faces they part.
-std::map<FacePair, std::vector<Piece>> CollectPieces(const Mesh& mesh,
-                                                     const std::vector<int>& face_of_triangle,
+std::map<FacePair, std::vector<Piece>> CollectPieces(const mesh::Mesh& mesh, const std::vector<int>& face_of_triangle,
                                                      double crease_angle_rad) {
   std::map<FacePair, std::vector<Piece>> pieces;
   for (const auto& [edge, triangles] : MakeEdgeMap(mesh)) {
@@ -47,8 +44,8 @@ std::map<FacePair, std::vector<Piece>> CollectPieces(const Mesh& mesh,
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       for (std::size_t j = i + 1; j < triangles.size(); ++j) {
         if (face_of_triangle[triangles[i]] == face_of_triangle[triangles[j]]) continue;
-        const double angle = AngleBetween(mesh.AreaNormal(mesh.triangles[triangles[i]]),
-                                          mesh.AreaNormal(mesh.triangles[triangles[j]]));
+        const double angle =
+            AngleBetween(mesh.AreaNormal(mesh.triangles[triangles[i]]), mesh.AreaNormal(mesh.triangles[triangles[j]]));
         if (angle <= largest) continue;
         largest = angle;
         first = triangles[i];
@@ -70,8 +67,8 @@ struct Run {
   bool convex;
 };
 
-bool IsOnLine(const Mesh& mesh, const Piece& piece, const Vector3d& origin,
-              const Vector3d& direction, double tolerance) {
+bool IsOnLine(const mesh::Mesh& mesh, const Piece& piece, const Vector3d& origin, const Vector3d& direction,
+              double tolerance) {
   for (const int v : {piece.edge.first, piece.edge.second}) {
     const Vector3d offset = mesh.vertices[v] - origin;
     if ((offset - offset.dot(direction) * direction).norm() > tolerance) return false;
@@ -79,8 +76,7 @@ bool IsOnLine(const Mesh& mesh, const Piece& piece, const Vector3d& origin,
   return true;
 }
 
-Run MakeRun(const Mesh& mesh, const Piece& piece, const Vector3d& origin,
-            const Vector3d& direction) {
+Run MakeRun(const mesh::Mesh& mesh, const Piece& piece, const Vector3d& origin, const Vector3d& direction) {
   const auto [a, b] = piece.edge;
   const double at_a = (mesh.vertices[a] - origin).dot(direction);
   const double at_b = (mesh.vertices[b] - origin).dot(direction);
@@ -93,8 +89,7 @@ std::vector<Run> JoinTouching(std::vector<Run> runs, double tolerance) {
   std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.begin < b.begin; });
   std::vector<Run> joined;
   for (const Run& run : runs) {
-    if (!joined.empty() && run.begin <= joined.back().end + tolerance &&
-        run.convex == joined.back().convex) {
+    if (!joined.empty() && run.begin <= joined.back().end + tolerance && run.convex == joined.back().convex) {
       if (run.end > joined.back().end) {
         joined.back().end = run.end;
         joined.back().last_vertex = run.last_vertex;
@@ -108,12 +103,11 @@ std::vector<Run> JoinTouching(std::vector<Run> runs, double tolerance) {
 
 // The straight runs of one pair of faces; it may have several lines (borders, faces that are not
 // quite planar).
-std::vector<Run> JoinPieces(const Mesh& mesh, std::vector<Piece> pieces, double tolerance) {
+std::vector<Run> JoinPieces(const mesh::Mesh& mesh, std::vector<Piece> pieces, double tolerance) {
   const auto length = [&](const Piece& p) {
     return (mesh.vertices[p.edge.second] - mesh.vertices[p.edge.first]).norm();
   };
-  std::stable_sort(pieces.begin(), pieces.end(),
-                   [&](const Piece& a, const Piece& b) { return length(a) > length(b); });
+  std::stable_sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) { return length(a) > length(b); });
   std::vector<Run> all;
   while (!pieces.empty()) {
     const Vector3d origin = mesh.vertices[pieces[0].edge.first];
@@ -136,19 +130,16 @@ std::vector<Run> JoinPieces(const Mesh& mesh, std::vector<Piece> pieces, double 
 
 }  // namespace
 
-std::vector<Crease> FindCreases(const Mesh& mesh, const std::vector<Face>& faces,
-                                const std::vector<int>& face_of_triangle, double crease_angle_rad,
-                                double tolerance) {
+std::vector<Crease> FindCreases(const mesh::Mesh& mesh, const std::vector<Face>& faces,
+                                const std::vector<int>& face_of_triangle, double crease_angle_rad, double tolerance) {
   std::vector<Crease> creases;
   for (const auto& [pair, pieces] : CollectPieces(mesh, face_of_triangle, crease_angle_rad)) {
     for (const Run& run : JoinPieces(mesh, pieces, tolerance)) {
       Crease crease;
-      crease.vertex = {std::min(run.first_vertex, run.last_vertex),
-                       std::max(run.first_vertex, run.last_vertex)};
+      crease.vertex = {std::min(run.first_vertex, run.last_vertex), std::max(run.first_vertex, run.last_vertex)};
       crease.face = {pair.first, pair.second};
       crease.length = (mesh.vertices[run.last_vertex] - mesh.vertices[run.first_vertex]).norm();
-      if (pair.second != kOpen)
-        crease.dihedral = AngleBetween(faces[pair.first].normal, faces[pair.second].normal);
+      if (pair.second != kOpen) crease.dihedral = AngleBetween(faces[pair.first].normal, faces[pair.second].normal);
       crease.convex = run.convex;
       creases.push_back(crease);
     }
@@ -157,8 +148,7 @@ std::vector<Crease> FindCreases(const Mesh& mesh, const std::vector<Face>& faces
   // vertices.
   std::sort(creases.begin(), creases.end(), [](const Crease& a, const Crease& b) {
     const auto length_a = static_cast<float>(a.length), length_b = static_cast<float>(b.length);
-    return length_a != length_b ? length_a > length_b
-                                : std::tie(a.vertex, a.face) < std::tie(b.vertex, b.face);
+    return length_a != length_b ? length_a > length_b : std::tie(a.vertex, a.face) < std::tie(b.vertex, b.face);
   });
   return creases;
 }

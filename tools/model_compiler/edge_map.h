@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/model_compiler/mesh.h"
+#include "mesh/mesh.h"
 
 namespace wirepose::tools {
 
@@ -19,7 +19,7 @@ using EdgeMap = std::map<EdgeKey, std::vector<int>>;
 inline EdgeKey MakeEdgeKey(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 // The triangles at every edge, by rising index. O(n log n).
-inline EdgeMap MakeEdgeMap(const Mesh& mesh) {
+inline EdgeMap MakeEdgeMap(const mesh::Mesh& mesh) {
   EdgeMap edges;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
     const auto& v = mesh.triangles[t];

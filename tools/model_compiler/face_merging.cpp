@@ -12,24 +12,22 @@ using Eigen::Vector3d;
 
 // Compared with the seed's plane, not with the neighbour's: a finely tessellated sphere must not
 // become one face.
-bool LiesIn(const Mesh& mesh, int t, const Vector3d& normal, const Vector3d& point,
+bool LiesIn(const mesh::Mesh& mesh, int t, const Vector3d& normal, const Vector3d& point,
             const FaceTolerance& tolerance) {
   const Vector3d n = mesh.AreaNormal(mesh.triangles[t]).normalized();
   if (n.dot(normal) < std::cos(tolerance.angle_rad)) return false;
-  return std::all_of(mesh.triangles[t].begin(), mesh.triangles[t].end(), [&](int v) {
-    return std::abs(normal.dot(mesh.vertices[v] - point)) <= tolerance.offset;
-  });
+  return std::all_of(mesh.triangles[t].begin(), mesh.triangles[t].end(),
+                     [&](int v) { return std::abs(normal.dot(mesh.vertices[v] - point)) <= tolerance.offset; });
 }
 
-Face Summarize(const Mesh& mesh, std::vector<int> triangles) {
+Face Summarize(const mesh::Mesh& mesh, std::vector<int> triangles) {
   std::sort(triangles.begin(), triangles.end());
   Face face{Vector3d::Zero(), Vector3d::Zero(), 0, std::move(triangles)};
   for (const int t : face.triangles) {
     const auto& v = mesh.triangles[t];
     const Vector3d normal = mesh.AreaNormal(v) / 2;
     face.normal += normal;
-    face.centroid +=
-        normal.norm() * (mesh.vertices[v[0]] + mesh.vertices[v[1]] + mesh.vertices[v[2]]) / 3;
+    face.centroid += normal.norm() * (mesh.vertices[v[0]] + mesh.vertices[v[1]] + mesh.vertices[v[2]]) / 3;
     face.area += normal.norm();
   }
   face.normal.normalize();
@@ -39,7 +37,7 @@ Face Summarize(const Mesh& mesh, std::vector<int> triangles) {
 
 }  // namespace
 
-std::vector<Face> MergeCoplanar(const Mesh& mesh, const FaceTolerance& tolerance,
+std::vector<Face> MergeCoplanar(const mesh::Mesh& mesh, const FaceTolerance& tolerance,
                                 std::vector<int>& face_of_triangle) {
   const EdgeMap edges = MakeEdgeMap(mesh);
   std::vector<int> order(mesh.triangles.size());
@@ -61,8 +59,7 @@ std::vector<Face> MergeCoplanar(const Mesh& mesh, const FaceTolerance& tolerance
       const auto v = mesh.triangles[grown[i]];
       for (int k = 0; k < 3; ++k) {
         for (const int next : edges.at(MakeEdgeKey(v[k], v[(k + 1) % 3]))) {
-          if (face_of_triangle[next] >= 0 || !LiesIn(mesh, next, normal, point, tolerance))
-            continue;
+          if (face_of_triangle[next] >= 0 || !LiesIn(mesh, next, normal, point, tolerance)) continue;
           face_of_triangle[next] = id;
           grown.push_back(next);
         }

@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "tools/model_compiler/mesh.h"
+#include "mesh/mesh.h"
 
 namespace wirepose::tools {
 
@@ -35,16 +35,15 @@ struct FaceTolerance {
 
 // Grows planar faces over triangles that share an edge, from the largest triangle on. Each triangle
 // gets one face. `face_of_triangle` receives its index. O(n log n).
-std::vector<Face> MergeCoplanar(const Mesh& mesh, const FaceTolerance& tolerance,
+std::vector<Face> MergeCoplanar(const mesh::Mesh& mesh, const FaceTolerance& tolerance,
                                 std::vector<int>& face_of_triangle);
 
 // Straight edges between two faces that meet at more than `crease_angle_rad`, and borders of open
 // meshes. Collinear pieces between the same two faces become one. Where more than two faces meet,
 // the two with the largest angle count. By falling length, then by vertices. `tolerance` [m]:
 // within it points coincide.
-std::vector<Crease> FindCreases(const Mesh& mesh, const std::vector<Face>& faces,
-                                const std::vector<int>& face_of_triangle, double crease_angle_rad,
-                                double tolerance);
+std::vector<Crease> FindCreases(const mesh::Mesh& mesh, const std::vector<Face>& faces,
+                                const std::vector<int>& face_of_triangle, double crease_angle_rad, double tolerance);
 
 }  // namespace wirepose::tools
 

@@ -14,7 +14,7 @@ struct LineSegment {
   [[nodiscard]] Vector3d Direction() const { return (b - a).normalized(); }
 };
 
-LineSegment SegmentOf(const Mesh& mesh, const Crease& c) {
+LineSegment SegmentOf(const mesh::Mesh& mesh, const Crease& c) {
   return {mesh.vertices[c.vertex[0]], mesh.vertices[c.vertex[1]]};
 }
 
@@ -40,11 +40,10 @@ int CommonFaces(const Crease& c, const Crease& o) {
   return count;
 }
 
-ModelLineSet DescribeSet(const std::vector<Crease>& creases, LineSetKind kind, int base,
-                         std::size_t first_member, const std::vector<ModelSetMember>& members) {
+ModelLineSet DescribeSet(const std::vector<Crease>& creases, LineSetKind kind, int base, std::size_t first_member,
+                         const std::vector<ModelSetMember>& members) {
   std::set<int> touched(creases[base].face.begin(), creases[base].face.end());
-  for (const ModelSetMember& m : members)
-    touched.insert(creases[m.edge].face.begin(), creases[m.edge].face.end());
+  for (const ModelSetMember& m : members) touched.insert(creases[m.edge].face.begin(), creases[m.edge].face.end());
   touched.erase(kOpen);
   return {kind, static_cast<std::uint16_t>(base), static_cast<std::uint16_t>(touched.size()),
           static_cast<std::uint32_t>(first_member), static_cast<std::uint32_t>(members.size())};
@@ -61,23 +60,19 @@ std::vector<int> BaseLines(const std::vector<std::vector<bool>>& co_visible) {
 
 }  // namespace
 
-ModelSetMember ParameterVector(const Mesh& mesh, const std::vector<Crease>& creases, int base,
-                               int member, double parallel_angle_rad) {
+ModelSetMember ParameterVector(const mesh::Mesh& mesh, const std::vector<Crease>& creases, int base, int member,
+                               double parallel_angle_rad) {
   const LineSegment s = SegmentOf(mesh, creases[base]), o = SegmentOf(mesh, creases[member]);
   const double angle = LineAngle(s, o);
-  const double distance =
-      angle <= parallel_angle_rad ? ParallelDistance(s, o) : CommonPerpendicular(s, o);
+  const double distance = angle <= parallel_angle_rad ? ParallelDistance(s, o) : CommonPerpendicular(s, o);
   const auto [nearest, farthest] =
       std::minmax({(s.a - o.a).norm(), (s.a - o.b).norm(), (s.b - o.a).norm(), (s.b - o.b).norm()});
-  return {static_cast<std::uint16_t>(member),
-          static_cast<std::uint16_t>(CommonFaces(creases[base], creases[member])),
-          static_cast<float>(angle),
-          static_cast<float>(distance),
-          static_cast<float>(nearest),
-          static_cast<float>(farthest)};
+  return {static_cast<std::uint16_t>(member), static_cast<std::uint16_t>(CommonFaces(creases[base], creases[member])),
+          static_cast<float>(angle),          static_cast<float>(distance),
+          static_cast<float>(nearest),        static_cast<float>(farthest)};
 }
 
-LineSets MakeLineSets(const Mesh& mesh, const std::vector<Crease>& creases,
+LineSets MakeLineSets(const mesh::Mesh& mesh, const std::vector<Crease>& creases,
                       const std::vector<std::vector<bool>>& co_visible, double parallel_angle_rad) {
   LineSets result;
   const std::vector<int> bases = BaseLines(co_visible);
@@ -86,15 +81,13 @@ LineSets MakeLineSets(const Mesh& mesh, const std::vector<Crease>& creases,
     for (const int other : bases) {
       if (other == base || !co_visible[base][other]) continue;
       const ModelSetMember v = ParameterVector(mesh, creases, base, other, parallel_angle_rad);
-      (static_cast<double>(v.angle_rad) <= parallel_angle_rad ? parallel : intersecting)
-          .push_back(v);
+      (static_cast<double>(v.angle_rad) <= parallel_angle_rad ? parallel : intersecting).push_back(v);
     }
     for (const auto kind : {LineSetKind::kParallel, LineSetKind::kIntersecting}) {
       auto& members = kind == LineSetKind::kParallel ? parallel : intersecting;
       if (members.empty()) continue;
-      std::stable_sort(members.begin(), members.end(), [](const auto& a, const auto& b) {
-        return a.nearest_end_m < b.nearest_end_m;
-      });
+      std::stable_sort(members.begin(), members.end(),
+                       [](const auto& a, const auto& b) { return a.nearest_end_m < b.nearest_end_m; });
       result.sets.push_back(DescribeSet(creases, kind, base, result.members.size(), members));
       result.members.insert(result.members.end(), members.begin(), members.end());
     }

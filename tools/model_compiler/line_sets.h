@@ -17,8 +17,8 @@ struct LineSets {
 // The parameter vector of the pair (base, member). lambda of lines within `parallel_angle_rad` is
 // the distance of the member's middle from the base line, of others that of the common
 // perpendicular.
-ModelSetMember ParameterVector(const Mesh& mesh, const std::vector<Crease>& creases, int base,
-                               int member, double parallel_angle_rad);
+ModelSetMember ParameterVector(const mesh::Mesh& mesh, const std::vector<Crease>& creases, int base, int member,
+                               double parallel_angle_rad);
 
 // For each of the longest kMaxLineSetEdges creases that an aspect shows, a parallel and an
 // intersecting set over the others of them that some aspect shows together with it; empty sets are
@@ -26,7 +26,7 @@ ModelSetMember ParameterVector(const Mesh& mesh, const std::vector<Crease>& crea
 // and j, `co_visible[i][i]` that some aspect shows i. An intersecting set also holds lines without
 // a common corner: their true end-point distance is in the vector, and delta_d (eq. 5) stays a
 // matter of matching. Members come by rising end-point distance, so corners come first.
-LineSets MakeLineSets(const Mesh& mesh, const std::vector<Crease>& creases,
+LineSets MakeLineSets(const mesh::Mesh& mesh, const std::vector<Crease>& creases,
                       const std::vector<std::vector<bool>>& co_visible, double parallel_angle_rad);
 
 }  // namespace wirepose::tools

@@ -49,18 +49,16 @@ class PointGrid {
  private:
   using Cell = std::array<std::int64_t, 3>;
   [[nodiscard]] Cell CellOf(const Vector3d& p) const {
-    return {std::llround(p.x() / tolerance_), std::llround(p.y() / tolerance_),
-            std::llround(p.z() / tolerance_)};
+    return {std::llround(p.x() / tolerance_), std::llround(p.y() / tolerance_), std::llround(p.z() / tolerance_)};
   }
   double tolerance_;
   std::map<Cell, std::vector<int>> cells_;
 };
 
-bool IsDegenerate(const Mesh& mesh, const Triangle& t, double tolerance) {
+bool IsDegenerate(const mesh::Mesh& mesh, const Triangle& t, double tolerance) {
   if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
   double longest = 0;
-  for (int k = 0; k < 3; ++k)
-    longest = std::max(longest, (mesh.vertices[t[(k + 1) % 3]] - mesh.vertices[t[k]]).norm());
+  for (int k = 0; k < 3; ++k) longest = std::max(longest, (mesh.vertices[t[(k + 1) % 3]] - mesh.vertices[t[k]]).norm());
   return mesh.AreaNormal(t).norm() <= tolerance * longest;  // height over the longest side
 }
 
@@ -70,7 +68,7 @@ Triangle Canonical(const Triangle& t) {
   return {t[first], t[(first + 1) % 3], t[(first + 2) % 3]};
 }
 
-void DropUnusedVertices(Mesh& mesh) {
+void DropUnusedVertices(mesh::Mesh& mesh) {
   std::vector<int> new_index(mesh.vertices.size(), -1);
   for (const Triangle& t : mesh.triangles) {
     for (const int v : t) new_index[v] = 0;
@@ -95,7 +93,7 @@ bool RunsAlong(const Triangle& t, int a, int b) {
   return false;
 }
 
-double SignedVolume(const Mesh& mesh, const std::vector<int>& component, const Vector3d& origin) {
+double SignedVolume(const mesh::Mesh& mesh, const std::vector<int>& component, const Vector3d& origin) {
   double volume = 0;
   for (const int t : component) {
     const Triangle& v = mesh.triangles[t];
@@ -106,8 +104,7 @@ double SignedVolume(const Mesh& mesh, const std::vector<int>& component, const V
 
 // Flood-fills from `seed` over edges with two triangles; `turn[t]` says whether t must be turned to
 // agree with the seed.
-std::vector<int> CollectComponent(const Mesh& mesh, const EdgeMap& edges, int seed,
-                                  std::vector<int>& turn) {
+std::vector<int> CollectComponent(const mesh::Mesh& mesh, const EdgeMap& edges, int seed, std::vector<int>& turn) {
   std::vector<int> component{seed};
   turn[seed] = 0;
   for (std::size_t i = 0; i < component.size(); ++i) {
@@ -126,8 +123,7 @@ std::vector<int> CollectComponent(const Mesh& mesh, const EdgeMap& edges, int se
   return component;
 }
 
-std::size_t TurnTriangles(const std::vector<int>& component, const std::vector<int>& turn,
-                          Mesh& mesh) {
+std::size_t TurnTriangles(const std::vector<int>& component, const std::vector<int>& turn, mesh::Mesh& mesh) {
   std::size_t turned = 0;
   for (const int t : component) {
     if (turn[t] == 0) continue;
@@ -138,8 +134,7 @@ std::size_t TurnTriangles(const std::vector<int>& component, const std::vector<i
 }
 
 // The vertex that lies inside the segment from a to b, nearest to a; -1 if none.
-int VertexInside(const Mesh& mesh, const std::set<int>& candidates, int a, int b,
-                 double tolerance) {
+int VertexInside(const mesh::Mesh& mesh, const std::set<int>& candidates, int a, int b, double tolerance) {
   const Vector3d direction = mesh.vertices[b] - mesh.vertices[a];
   const double length = direction.norm();
   int best = -1;
@@ -157,7 +152,7 @@ int VertexInside(const Mesh& mesh, const std::set<int>& candidates, int a, int b
 
 }  // namespace
 
-double Diameter(const Mesh& mesh) {
+double Diameter(const mesh::Mesh& mesh) {
   double squared = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     for (std::size_t j = i + 1; j < mesh.vertices.size(); ++j) {
@@ -167,7 +162,7 @@ double Diameter(const Mesh& mesh) {
   return std::sqrt(squared);
 }
 
-double BoxDiagonal(const Mesh& mesh) {
+double BoxDiagonal(const mesh::Mesh& mesh) {
   if (mesh.vertices.empty()) return 0;
   Vector3d low = mesh.vertices[0], high = low;
   for (const Vector3d& v : mesh.vertices) {
@@ -177,12 +172,11 @@ double BoxDiagonal(const Mesh& mesh) {
   return (high - low).norm();
 }
 
-std::size_t Weld(double tolerance, Mesh& mesh) {
+std::size_t Weld(double tolerance, mesh::Mesh& mesh) {
   // Sorted first, so that the representative of a cluster does not depend on the file's order.
   std::vector<int> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return Less(mesh.vertices[a], mesh.vertices[b]); });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return Less(mesh.vertices[a], mesh.vertices[b]); });
   std::vector<Vector3d> welded;
   std::vector<int> new_index(mesh.vertices.size());
   PointGrid grid(tolerance);
@@ -207,7 +201,7 @@ std::size_t Weld(double tolerance, Mesh& mesh) {
   return before - mesh.triangles.size();
 }
 
-std::size_t SplitAtTJunctions(double tolerance, Mesh& mesh) {
+std::size_t SplitAtTJunctions(double tolerance, mesh::Mesh& mesh) {
   std::size_t splits = 0;
   for (bool changed = true; changed;) {
     changed = false;
@@ -237,15 +231,14 @@ std::size_t SplitAtTJunctions(double tolerance, Mesh& mesh) {
   return splits;
 }
 
-std::size_t OrientOutward(Mesh& mesh) {
+std::size_t OrientOutward(mesh::Mesh& mesh) {
   const EdgeMap edges = MakeEdgeMap(mesh);
   std::vector<int> turn(mesh.triangles.size(), -1);
   std::size_t turned = 0;
   for (int seed = 0; seed < static_cast<int>(mesh.triangles.size()); ++seed) {
     if (turn[seed] >= 0) continue;
     const std::vector<int> component = CollectComponent(mesh, edges, seed, turn);
-    const auto minority =
-        std::count_if(component.begin(), component.end(), [&](int t) { return turn[t] == 1; });
+    const auto minority = std::count_if(component.begin(), component.end(), [&](int t) { return turn[t] == 1; });
     if (2 * minority > static_cast<std::ptrdiff_t>(component.size())) {
       for (const int t : component) turn[t] = 1 - turn[t];
     }
@@ -261,8 +254,7 @@ std::size_t OrientOutward(Mesh& mesh) {
       area += a;
     }
     centre /= area;
-    for (const int t : component)
-      extent = std::max(extent, (mesh.vertices[mesh.triangles[t][0]] - centre).norm());
+    for (const int t : component) extent = std::max(extent, (mesh.vertices[mesh.triangles[t][0]] - centre).norm());
     if (SignedVolume(mesh, component, centre) < -1e-6 * area * extent) {
       for (const int t : component) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
       turned += component.size();

@@ -12,8 +12,7 @@ namespace {
 
 template <typename Record>
 ModelSection Append(const std::vector<Record>& records, std::vector<std::byte>& file) {
-  const std::size_t offset =
-      (file.size() + kModelAlignment - 1) / kModelAlignment * kModelAlignment;
+  const std::size_t offset = (file.size() + kModelAlignment - 1) / kModelAlignment * kModelAlignment;
   const auto bytes = std::as_bytes(std::span(records));
   file.resize(offset + bytes.size());
   std::copy(bytes.begin(), bytes.end(), file.begin() + static_cast<std::ptrdiff_t>(offset));
@@ -49,8 +48,7 @@ void SealModel(std::vector<std::byte>& file) {
   const auto size = static_cast<std::uint32_t>(file.size());
   std::memcpy(file.data() + offsetof(ModelFileHeader, file_size), &size, sizeof size);
   constexpr std::size_t kCrc = offsetof(ModelFileHeader, crc32c);
-  const std::uint32_t crc =
-      Crc32c(std::span<const std::byte>(file).subspan(kCrc + sizeof(std::uint32_t)));
+  const std::uint32_t crc = Crc32c(std::span<const std::byte>(file).subspan(kCrc + sizeof(std::uint32_t)));
   std::memcpy(file.data() + kCrc, &crc, sizeof crc);
 }
 

@@ -14,8 +14,7 @@ namespace wirepose::tools {
 // Diameter, bounding box and discrete symmetries of each model by id, lengths in millimetres,
 // symmetries as row-major 4x4 matrices without the identity. Replaces the file. The error names the
 // file.
-Result<void, std::string> WriteModelsInfo(const std::filesystem::path& file,
-                                          std::span<const ModelView> models);
+Result<void, std::string> WriteModelsInfo(const std::filesystem::path& file, std::span<const ModelView> models);
 
 }  // namespace wirepose::tools
 

@@ -22,8 +22,7 @@ struct Shape {
   std::vector<Face> faces;
 };
 
-Shape MakeShape(const Mesh& mesh, const std::vector<Face>& faces,
-                const std::vector<Crease>& creases) {
+Shape MakeShape(const mesh::Mesh& mesh, const std::vector<Face>& faces, const std::vector<Crease>& creases) {
   Shape shape{Vector3d::Zero(), {}, faces};
   double area = 0;
   for (const Face& f : faces) {
@@ -33,22 +32,18 @@ Shape MakeShape(const Mesh& mesh, const std::vector<Face>& faces,
   shape.centre /= area;
   for (Face& f : shape.faces) f.centroid -= shape.centre;
   for (const Crease& c : creases) {
-    shape.segments.push_back(
-        {mesh.vertices[c.vertex[0]] - shape.centre, mesh.vertices[c.vertex[1]] - shape.centre});
+    shape.segments.push_back({mesh.vertices[c.vertex[0]] - shape.centre, mesh.vertices[c.vertex[1]] - shape.centre});
   }
   return shape;
 }
 
 bool MapsOntoItself(const Shape& shape, const Matrix3d& R, double tolerance) {
-  const auto near = [&](const Vector3d& p, const Vector3d& q) {
-    return (p - q).norm() <= tolerance;
-  };
+  const auto near = [&](const Vector3d& p, const Vector3d& q) { return (p - q).norm() <= tolerance; };
   for (const auto& s : shape.segments) {
     const Vector3d a = R * s.a, b = R * s.b;
-    const bool found =
-        std::any_of(shape.segments.begin(), shape.segments.end(), [&](const auto& other) {
-          return (near(a, other.a) && near(b, other.b)) || (near(a, other.b) && near(b, other.a));
-        });
+    const bool found = std::any_of(shape.segments.begin(), shape.segments.end(), [&](const auto& other) {
+      return (near(a, other.a) && near(b, other.b)) || (near(a, other.b) && near(b, other.a));
+    });
     if (!found) return false;
   }
   for (const Face& f : shape.faces) {
@@ -67,8 +62,7 @@ std::optional<Matrix3d> FrameOf(const Shape::Segment& s, bool reversed, double t
   const Vector3d middle = s.Middle();
   const Vector3d direction = reversed ? Vector3d(s.a - s.b) : Vector3d(s.b - s.a);
   const Vector3d normal = middle.cross(direction);
-  if (normal.norm() <= tolerance * direction.norm())
-    return std::nullopt;  // the line passes through the centre
+  if (normal.norm() <= tolerance * direction.norm()) return std::nullopt;  // the line passes through the centre
   Matrix3d F;
   F.col(0) = direction.normalized();
   F.col(2) = normal.normalized();
@@ -90,9 +84,8 @@ std::optional<std::size_t> RarestSegment(const Shape& shape, double tolerance) {
   std::ptrdiff_t fewest = 0;
   for (std::size_t i = 0; i < shape.segments.size(); ++i) {
     if (!FrameOf(shape.segments[i], false, 10 * tolerance)) continue;
-    const auto alike =
-        std::count_if(shape.segments.begin(), shape.segments.end(),
-                      [&](const auto& o) { return Alike(shape.segments[i], o, tolerance); });
+    const auto alike = std::count_if(shape.segments.begin(), shape.segments.end(),
+                                     [&](const auto& o) { return Alike(shape.segments[i], o, tolerance); });
     if (best && alike >= fewest) continue;
     best = i;
     fewest = alike;
@@ -122,8 +115,7 @@ std::vector<Matrix3d> FindGroup(const Shape& shape, double tolerance) {
       const auto G = FrameOf(s, reversed, 5 * tolerance);
       if (!G) continue;
       const Matrix3d R = *G * F.transpose();
-      if (!Find(group, R) && MapsOntoItself(shape, R, tolerance))
-        group.push_back(Orthonormalize(R));
+      if (!Find(group, R) && MapsOntoItself(shape, R, tolerance)) group.push_back(Orthonormalize(R));
     }
   }
   return group;
@@ -131,8 +123,7 @@ std::vector<Matrix3d> FindGroup(const Shape& shape, double tolerance) {
 
 // The products of the generators, as indices into `group`; empty when they are more than `limit` or
 // leave the group.
-std::set<int> Closure(const std::vector<Matrix3d>& group, std::initializer_list<int> generators,
-                      std::size_t limit) {
+std::set<int> Closure(const std::vector<Matrix3d>& group, std::initializer_list<int> generators, std::size_t limit) {
   std::set<int> members{0};
   std::vector<int> pending{0};
   while (!pending.empty()) {
@@ -171,9 +162,8 @@ std::set<int> LargestSubgroup(const std::vector<Matrix3d>& group, std::size_t li
 
 }  // namespace
 
-Symmetries FindSymmetries(const Mesh& mesh, const std::vector<Face>& faces,
-                          const std::vector<Crease>& creases, double tolerance,
-                          std::size_t capacity) {
+Symmetries FindSymmetries(const mesh::Mesh& mesh, const std::vector<Face>& faces, const std::vector<Crease>& creases,
+                          double tolerance, std::size_t capacity) {
   const Shape shape = MakeShape(mesh, faces, creases);
   std::vector<Matrix3d> group = FindGroup(shape, tolerance);
   Symmetries result;

@@ -19,9 +19,8 @@ struct Symmetries {
 // `tolerance` [m], at most `capacity` of them. Of a larger group (a finely tessellated cylinder)
 // the largest subgroup that fits and that one or two elements generate is kept. Shape only: what is
 // printed on the object is not seen. O(creases^3) at worst.
-Symmetries FindSymmetries(const Mesh& mesh, const std::vector<Face>& faces,
-                          const std::vector<Crease>& creases, double tolerance,
-                          std::size_t capacity);
+Symmetries FindSymmetries(const mesh::Mesh& mesh, const std::vector<Face>& faces, const std::vector<Crease>& creases,
+                          double tolerance, std::size_t capacity);
 
 }  // namespace wirepose::tools
 

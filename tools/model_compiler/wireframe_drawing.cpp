@@ -45,8 +45,8 @@ class Camera {
 
 // Moeller and Trumbore 1997: where the segment from `from` to `to` crosses the triangle, as a
 // fraction of the segment.
-bool Crosses(const Vector3d& from, const Vector3d& to, const Vector3d& a, const Vector3d& b,
-             const Vector3d& c, double& at) {
+bool Crosses(const Vector3d& from, const Vector3d& to, const Vector3d& a, const Vector3d& b, const Vector3d& c,
+             double& at) {
   const Vector3d d = to - from, e1 = b - a, e2 = c - a, p = d.cross(e2);
   const double det = e1.dot(p);
   if (std::abs(det) < 1e-18) return false;
@@ -60,8 +60,7 @@ bool IsHidden(const ModelView& m, const Vector3d& camera, const Vector3d& point)
   const double limit = 1 - 1e-3 * static_cast<double>(m.diameter_m) / (point - camera).norm();
   return std::any_of(m.triangles.begin(), m.triangles.end(), [&](const ModelTriangle& t) {
     double at = 0;
-    return Crosses(camera, point, Position(m, t.vertex[0]), Position(m, t.vertex[1]),
-                   Position(m, t.vertex[2]), at) &&
+    return Crosses(camera, point, Position(m, t.vertex[0]), Position(m, t.vertex[1]), Position(m, t.vertex[2]), at) &&
            at < limit;
   });
 }
@@ -69,25 +68,21 @@ bool IsHidden(const ModelView& m, const Vector3d& camera, const Vector3d& point)
 bool FacesCamera(const ModelView& m, const ModelEdge& e, const Vector3d& camera) {
   if (e.face[1] == kNoFace) return true;
   return std::any_of(std::begin(e.face), std::end(e.face), [&](std::uint16_t f) {
-    return Vector3(m.faces[f].normal).cast<double>().dot(camera) >
-           static_cast<double>(m.faces[f].offset_m);
+    return Vector3(m.faces[f].normal).cast<double>().dot(camera) > static_cast<double>(m.faces[f].offset_m);
   });
 }
 
-void DrawEdge(const ModelView& m, const Camera& camera, const ModelEdge& e, bool draw_hidden,
-              cv::Mat& image) {
+void DrawEdge(const ModelView& m, const Camera& camera, const ModelEdge& e, bool draw_hidden, cv::Mat& image) {
   const Vector3d a = Position(m, e.vertex[0]), b = Position(m, e.vertex[1]);
-  const cv::Scalar visible_colour =
-      e.face[1] == kNoFace ? cv::Scalar(40, 40, 200) : cv::Scalar(20, 20, 20);
+  const cv::Scalar visible_colour = e.face[1] == kNoFace ? cv::Scalar(40, 40, 200) : cv::Scalar(20, 20, 20);
   const bool faces_camera = FacesCamera(m, e, camera.position());
   for (int k = 0; k < kPieces; ++k) {
     const Vector3d p = a + (b - a) * k / kPieces, q = a + (b - a) * (k + 1) / kPieces;
     const bool hidden = !faces_camera || IsHidden(m, camera.position(), (p + q) / 2);
     if (hidden != draw_hidden) continue;
     if (hidden && k / 4 % 2 == 1) continue;  // the dashes
-    cv::line(image, camera.Pixel(p), camera.Pixel(q),
-             hidden ? cv::Scalar(190, 190, 190) : visible_colour, hidden ? 1 : 2, cv::LINE_AA,
-             kSubpixelBits);
+    cv::line(image, camera.Pixel(p), camera.Pixel(q), hidden ? cv::Scalar(190, 190, 190) : visible_colour,
+             hidden ? 1 : 2, cv::LINE_AA, kSubpixelBits);
   }
 }
 
@@ -105,8 +100,7 @@ Result<void, std::string> DrawWireframe(const ModelView& model, const std::files
   } catch (const cv::Exception&) {  // unknown extension
   }
   if (!written)
-    return unexpected(png.string() +
-                      ": cannot be written; give a path in a writable folder that ends in .png");
+    return unexpected(png.string() + ": cannot be written; give a path in a writable folder that ends in .png");
   return {};
 }
 

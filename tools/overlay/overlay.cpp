@@ -28,34 +28,27 @@ cv::Point ToCanvas(double u, double v) {
   return {at(u), at(v)};
 }
 
-void DrawLine(cv::Mat& canvas, const cv::Point2d& a, const cv::Point2d& b, const cv::Scalar& colour,
-              int width) {
-  cv::line(canvas, ToCanvas(a.x, a.y), ToCanvas(b.x, b.y), colour, width, cv::LINE_AA,
-           kSubPixelBits);
+void DrawLine(cv::Mat& canvas, const cv::Point2d& a, const cv::Point2d& b, const cv::Scalar& colour, int width) {
+  cv::line(canvas, ToCanvas(a.x, a.y), ToCanvas(b.x, b.y), colour, width, cv::LINE_AA, kSubPixelBits);
 }
 
-cv::Point2d ToPoint(const Vector2& p) {
-  return {static_cast<double>(p.x()), static_cast<double>(p.y())};
-}
+cv::Point2d ToPoint(const Vector2& p) { return {static_cast<double>(p.x()), static_cast<double>(p.y())}; }
 
 void DrawSegment(cv::Mat& canvas, const Segment2& s, const cv::Scalar& colour, int width) {
   DrawLine(canvas, ToPoint(s.a), ToPoint(s.b), colour, width);
 }
 
 // 3 px on, 3 px off.
-void DrawDashed(cv::Mat& canvas, const cv::Point2d& a, const cv::Point2d& b,
-                const cv::Scalar& colour) {
+void DrawDashed(cv::Mat& canvas, const cv::Point2d& a, const cv::Point2d& b, const cv::Scalar& colour) {
   constexpr double kDashPx = 3;
   const int dashes = std::clamp(static_cast<int>(cv::norm(b - a) / (2 * kDashPx)), 1, 1000);
   for (int i = 0; i < dashes; ++i) {
-    DrawLine(canvas, a + (b - a) * ((i + 0.0) / dashes), a + (b - a) * ((i + 0.5) / dashes), colour,
-             1);
+    DrawLine(canvas, a + (b - a) * ((i + 0.0) / dashes), a + (b - a) * ((i + 0.5) / dashes), colour, 1);
   }
 }
 
 // Text on a dark shadow, so that it reads on any image.
-void DrawText(cv::Mat& canvas, const std::string& text, const cv::Point& at,
-              const cv::Scalar& colour) {
+void DrawText(cv::Mat& canvas, const std::string& text, const cv::Point& at, const cv::Scalar& colour) {
   cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.6, cv::Scalar(0, 0, 0), 4, cv::LINE_AA);
   cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, 0.6, colour, 1, cv::LINE_AA);
 }
@@ -92,8 +85,7 @@ class DepthScale {
 
   [[nodiscard]] cv::Scalar Colour(double depth_m) const {
     const double share = (1 / depth_m - 1 / far_m_) / (1 / near_m_ - 1 / far_m_);
-    const cv::Mat1b level(
-        1, 1, static_cast<std::uint8_t>(std::lround(std::clamp(share, 0.0, 1.0) * 215 + 30)));
+    const cv::Mat1b level(1, 1, static_cast<std::uint8_t>(std::lround(std::clamp(share, 0.0, 1.0) * 215 + 30)));
     cv::Mat3b colour;
     cv::applyColorMap(level, colour, cv::COLORMAP_TURBO);
     return cv::Scalar(colour(0, 0));
@@ -135,8 +127,7 @@ cv::Mat DrawLines(const OverlayInput& in) {
     ++with_depth;
     DrawSegment(canvas, l.segment, scale.Colour(DepthScale::DepthOf(l)), 2);
   }
-  const std::string text =
-      fmt::format("{} segments, {} with depth", in.segments.size(), with_depth);
+  const std::string text = fmt::format("{} segments, {} with depth", in.segments.size(), with_depth);
   DrawText(canvas, text, {16, 30}, kWhite);
   if (with_depth > 0) scale.Draw(canvas);
   return canvas;
@@ -162,9 +153,8 @@ void DrawObject(cv::Mat& canvas, const OverlayObject& object, const RectifiedCam
   }
   if (object.label.empty() || visible == 0) return;
   const cv::Point2d middle = sum / visible * kEnlarge;
-  const cv::Point at(
-      std::clamp(static_cast<int>(std::clamp(middle.x, 0.0, 1e4)) - 60, 4, canvas.cols - 200),
-      std::clamp(static_cast<int>(std::clamp(middle.y, 0.0, 1e4)), 76, canvas.rows - 24));
+  const cv::Point at(std::clamp(static_cast<int>(std::clamp(middle.x, 0.0, 1e4)) - 60, 4, canvas.cols - 200),
+                     std::clamp(static_cast<int>(std::clamp(middle.y, 0.0, 1e4)), 76, canvas.rows - 24));
   DrawText(canvas, object.label, at, colour);
 }
 
@@ -177,15 +167,14 @@ cv::Mat DrawObjects(const OverlayInput& in) {
     }
   }
   for (const LineSetMember& m : in.line_sets) {
-    if (m.line < in.lines.size())
-      DrawSegment(canvas, in.lines[m.line].segment, SetColour(m.set), 3);
+    if (m.line < in.lines.size()) DrawSegment(canvas, in.lines[m.line].segment, SetColour(m.set), 3);
   }
   const auto found = std::ranges::count(in.objects, PoseKind::kFound, &OverlayObject::kind);
   const bool has_truth = static_cast<std::size_t>(found) < in.objects.size();
   DrawText(canvas, fmt::format("{} found", found), {16, 30}, kFoundColour);
   if (has_truth)
-    DrawText(canvas, fmt::format("{} true", in.objects.size() - static_cast<std::size_t>(found)),
-             {16, 54}, kTruthColour);
+    DrawText(canvas, fmt::format("{} true", in.objects.size() - static_cast<std::size_t>(found)), {16, 54},
+             kTruthColour);
   return canvas;
 }
 

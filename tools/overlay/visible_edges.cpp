@@ -15,8 +15,7 @@ constexpr double kSurfaceTolerance = 1e-3;
 
 // Distance along the ray from the origin through `p`, in units of |p|, at which it meets the
 // triangle (Moeller and Trumbore 1997), both sides counting. Border hits count.
-std::optional<double> Intersect(const Vector3d& p, const Vector3d& a, const Vector3d& b,
-                                const Vector3d& c) {
+std::optional<double> Intersect(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const Vector3d e1 = b - a;
   const Vector3d e2 = c - a;
   const Vector3d h = p.cross(e2);
@@ -33,8 +32,7 @@ std::optional<double> Intersect(const Vector3d& p, const Vector3d& a, const Vect
 bool IsHidden(const ModelView& model, const std::vector<Vector3d>& vertices, const Vector3d& p) {
   const double tolerance = kSurfaceTolerance * static_cast<double>(model.diameter_m) / p.norm();
   for (const ModelTriangle& t : model.triangles) {
-    const auto hit =
-        Intersect(p, vertices[t.vertex[0]], vertices[t.vertex[1]], vertices[t.vertex[2]]);
+    const auto hit = Intersect(p, vertices[t.vertex[0]], vertices[t.vertex[1]], vertices[t.vertex[2]]);
     if (hit && *hit > 0 && *hit < 1 - tolerance) return true;
   }
   return false;

@@ -1,13 +1,13 @@
 // A triangle mesh on its way from a file to a line model.
-#ifndef WIREPOSE_TOOLS_MODEL_COMPILER_MESH_H_
-#define WIREPOSE_TOOLS_MODEL_COMPILER_MESH_H_
+#ifndef WIREPOSE_MESH_MESH_H_
+#define WIREPOSE_MESH_MESH_H_
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 #include <vector>
 
-namespace wirepose::tools {
+namespace wirepose::mesh {
 
 // Metres, model frame. Triangles are counter-clockwise seen from outside once OrientOutward has
 // run.
@@ -21,6 +21,6 @@ struct Mesh {
   }
 };
 
-}  // namespace wirepose::tools
+}  // namespace wirepose::mesh
 
-#endif  // WIREPOSE_TOOLS_MODEL_COMPILER_MESH_H_
+#endif  // WIREPOSE_MESH_MESH_H_

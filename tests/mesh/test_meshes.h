@@ -1,26 +1,23 @@
 // Small meshes whose wireframes are known by heart. Metres.
-#ifndef WIREPOSE_TESTS_TOOLS_MODEL_TEST_MESHES_H_
-#define WIREPOSE_TESTS_TOOLS_MODEL_TEST_MESHES_H_
+#ifndef WIREPOSE_TESTS_MESH_TEST_MESHES_H_
+#define WIREPOSE_TESTS_MESH_TEST_MESHES_H_
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-#include "tools/model_compiler/mesh.h"
-#include "tools/model_compiler/model_compiler.h"
+#include "mesh/mesh.h"
 
 namespace wirepose::testing {
 
-using tools::Mesh;
+using mesh::Mesh;
 
 // Twelve outward triangles over eight vertices, centred at `centre`.
-inline Mesh BoxMesh(double x, double y, double z,
-                    const Eigen::Vector3d& centre = Eigen::Vector3d::Zero()) {
+inline Mesh BoxMesh(double x, double y, double z, const Eigen::Vector3d& centre = Eigen::Vector3d::Zero()) {
   Mesh mesh;
   for (const double sz : {-0.5, 0.5}) {
     for (const double sy : {-0.5, 0.5}) {
-      for (const double sx : {-0.5, 0.5})
-        mesh.vertices.emplace_back(centre + Eigen::Vector3d(sx * x, sy * y, sz * z));
+      for (const double sx : {-0.5, 0.5}) mesh.vertices.emplace_back(centre + Eigen::Vector3d(sx * x, sy * y, sz * z));
     }
   }
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
@@ -51,8 +48,7 @@ inline Mesh PrismMesh(int sides, double radius, double height) {
 inline void Append(const Mesh& other, Mesh& mesh) {
   const int first = static_cast<int>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& t : other.triangles)
-    mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  for (const auto& t : other.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
 }
 
 // Every triangle with vertices of its own, as an STL file has them.
@@ -90,13 +86,6 @@ inline Mesh TwoPartMesh() {
   return mesh;
 }
 
-inline tools::CompileOptions TestOptions(std::uint32_t id = 7) {
-  tools::CompileOptions options;
-  options.id = id;
-  options.name = "test object";
-  return options;
-}
-
 }  // namespace wirepose::testing
 
-#endif  // WIREPOSE_TESTS_TOOLS_MODEL_TEST_MESHES_H_
+#endif  // WIREPOSE_TESTS_MESH_TEST_MESHES_H_

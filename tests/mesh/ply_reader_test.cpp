@@ -1,4 +1,4 @@
-#include "tools/model_compiler/ply_reader.h"
+#include "mesh/ply_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,15 +6,15 @@
 #include <cstring>
 #include <random>
 
-#include "tests/tools/model_test_meshes.h"
-#include "tools/model_compiler/polygon.h"
+#include "mesh/polygon.h"
+#include "tests/mesh/test_meshes.h"
 
 namespace wirepose {
 namespace {
 
+using mesh::Mesh;
+using mesh::ParsePly;
 using ::testing::HasSubstr;
-using tools::Mesh;
-using tools::ParsePly;
 
 const char kAsciiBox[] =
     "ply\r\nformat ascii 1.0\ncomment a box with normals and a colour\nelement vertex 4\nproperty "
@@ -33,12 +33,10 @@ void Put(T value, bool big_endian, std::string& out) {
 }
 
 std::string BinaryPly(const Mesh& mesh, bool big_endian) {
-  std::string out =
-      std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
-      "_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
-      "\nproperty float x\nproperty double y\nproperty short id\nproperty float z\nelement face " +
-      std::to_string(mesh.triangles.size()) +
-      "\nproperty list ushort uint vertex_indices\nend_header\n";
+  std::string out = std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
+                    "_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
+                    "\nproperty float x\nproperty double y\nproperty short id\nproperty float z\nelement face " +
+                    std::to_string(mesh.triangles.size()) + "\nproperty list ushort uint vertex_indices\nend_header\n";
   for (const auto& v : mesh.vertices) {
     Put(static_cast<float>(v.x()), big_endian, out);
     Put(v.y(), big_endian, out);
@@ -74,11 +72,9 @@ TEST(PlyReader, ReadsBothByteOrders) {
 
 TEST(PlyReader, RefusesEveryTruncation) {
   const std::string ascii(kAsciiBox);
-  for (std::size_t n = 0; n + 2 < ascii.size(); ++n)
-    EXPECT_FALSE(ParsePly(ascii.substr(0, n), 1).has_value()) << n;
+  for (std::size_t n = 0; n + 2 < ascii.size(); ++n) EXPECT_FALSE(ParsePly(ascii.substr(0, n), 1).has_value()) << n;
   const std::string binary = BinaryPly(testing::PrismMesh(9, 0.1, 0.3), true);
-  for (std::size_t n = 0; n < binary.size(); ++n)
-    EXPECT_FALSE(ParsePly(binary.substr(0, n), 1).has_value()) << n;
+  for (std::size_t n = 0; n < binary.size(); ++n) EXPECT_FALSE(ParsePly(binary.substr(0, n), 1).has_value()) << n;
 }
 
 TEST(PlyReader, SurvivesDamage) {
@@ -89,8 +85,7 @@ TEST(PlyReader, SurvivesDamage) {
     std::string file = seeds[i % 2];
     for (std::size_t edits = 1 + random() % 4; edits > 0; --edits) {
       const char common[] = "0123456789-.e \n";
-      file[random() % file.size()] =
-          random() % 2 == 0 ? static_cast<char>(random()) : common[random() % 15];
+      file[random() % file.size()] = random() % 2 == 0 ? static_cast<char>(random()) : common[random() % 15];
     }
     const auto mesh = ParsePly(file, 1);
     if (!mesh) continue;
@@ -129,8 +124,7 @@ TEST(Polygon, TrianglesCoverConcavePolygonsExactly) {
   std::uniform_real_distribution<double> radius(0.2, 1.0);
   for (int i = 0; i < 300; ++i) {
     // Star-shaped about the origin, in a tilted plane: simple, mostly concave.
-    const Eigen::Matrix3d R =
-        Eigen::Quaterniond(1, radius(random), radius(random), 0).normalized().toRotationMatrix();
+    const Eigen::Matrix3d R = Eigen::Quaterniond(1, radius(random), radius(random), 0).normalized().toRotationMatrix();
     Mesh mesh;
     std::vector<int> polygon;
     const int corners = 3 + i % 20;
@@ -140,9 +134,8 @@ TEST(Polygon, TrianglesCoverConcavePolygonsExactly) {
       mesh.vertices.emplace_back(R * Eigen::Vector3d(r * std::cos(a), r * std::sin(a), 0));
       polygon.push_back(k);
     }
-    for (int k = 0; k < corners; ++k)
-      area += mesh.vertices[k].cross(mesh.vertices[(k + 1) % corners]);
-    tools::AppendPolygon(polygon, mesh);
+    for (int k = 0; k < corners; ++k) area += mesh.vertices[k].cross(mesh.vertices[(k + 1) % corners]);
+    mesh::AppendPolygon(polygon, mesh);
     ASSERT_EQ(mesh.triangles.size(), static_cast<std::size_t>(corners - 2));
     double total = 0;
     for (const auto& t : mesh.triangles) {

@@ -1,4 +1,4 @@
-#include "tools/model_compiler/mesh_reader.h"
+#include "mesh/mesh_reader.h"
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -9,9 +9,9 @@
 #include <sstream>
 #include <system_error>
 
-#include "tools/model_compiler/ply_reader.h"
+#include "mesh/ply_reader.h"
 
-namespace wirepose::tools {
+namespace wirepose::mesh {
 namespace {
 
 std::string OneLine(std::string text) {
@@ -30,8 +30,7 @@ void Append(const aiMesh& part, double scale, Mesh& mesh) {
   for (unsigned i = 0; i < part.mNumFaces; ++i) {
     const aiFace& face = part.mFaces[i];
     if (face.mNumIndices != 3) continue;  // loose points and lines
-    mesh.triangles.push_back({first + static_cast<int>(face.mIndices[0]),
-                              first + static_cast<int>(face.mIndices[1]),
+    mesh.triangles.push_back({first + static_cast<int>(face.mIndices[0]), first + static_cast<int>(face.mIndices[1]),
                               first + static_cast<int>(face.mIndices[2])});
   }
 }
@@ -44,18 +43,15 @@ Result<Mesh, std::string> ReadPly(const std::filesystem::path& file, double metr
   return ParsePly(text.str(), metres_per_unit);
 }
 
-Result<Mesh, std::string> ReadWithAssimp(const std::filesystem::path& file,
-                                         double metres_per_unit) {
+Result<Mesh, std::string> ReadWithAssimp(const std::filesystem::path& file, double metres_per_unit) {
   Assimp::Importer importer;
-  const aiScene* scene =
-      importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
+  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
   if (scene == nullptr) {
     return unexpected("cannot be read as a mesh (" + OneLine(importer.GetErrorString()) +
                       "); export it as PLY, OBJ or STL");
   }
   Mesh mesh;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i)
-    Append(*scene->mMeshes[i], metres_per_unit, mesh);
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) Append(*scene->mMeshes[i], metres_per_unit, mesh);
   return mesh;
 }
 
@@ -78,9 +74,8 @@ Result<Mesh, std::string> ReadMesh(const std::filesystem::path& file, double met
     return unexpected(name + ": the file is empty; export the mesh again");
   auto mesh = IsPly(file) ? ReadPly(file, metres_per_unit) : ReadWithAssimp(file, metres_per_unit);
   if (!mesh) return unexpected(name + ": " + mesh.error());
-  if (mesh->triangles.empty())
-    return unexpected(name + ": has no faces; export the object as a surface mesh");
+  if (mesh->triangles.empty()) return unexpected(name + ": has no faces; export the object as a surface mesh");
   return mesh;
 }
 
-}  // namespace wirepose::tools
+}  // namespace wirepose::mesh

@@ -1,4 +1,4 @@
-#include "tools/model_compiler/ply_reader.h"
+#include "mesh/ply_reader.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,9 +9,9 @@
 #include <sstream>
 #include <vector>
 
-#include "tools/model_compiler/polygon.h"
+#include "mesh/polygon.h"
 
-namespace wirepose::tools {
+namespace wirepose::mesh {
 namespace {
 
 constexpr std::size_t kMaxPolygon = 1000;  // corners; ear clipping is cubic
@@ -42,14 +42,11 @@ std::string At(std::size_t line) { return "line " + std::to_string(line) + ": ";
 
 bool ParseType(const std::string& name, Type& type) {
   const std::pair<const char*, Type> names[] = {
-      {"char", Type::kInt8},     {"int8", Type::kInt8},     {"uchar", Type::kUint8},
-      {"uint8", Type::kUint8},   {"short", Type::kInt16},   {"int16", Type::kInt16},
-      {"ushort", Type::kUint16}, {"uint16", Type::kUint16}, {"int", Type::kInt32},
-      {"int32", Type::kInt32},   {"uint", Type::kUint32},   {"uint32", Type::kUint32},
-      {"float", Type::kFloat},   {"float32", Type::kFloat}, {"double", Type::kDouble},
-      {"float64", Type::kDouble}};
-  const auto* it = std::find_if(std::begin(names), std::end(names),
-                                [&](const auto& n) { return name == n.first; });
+      {"char", Type::kInt8},   {"int8", Type::kInt8},     {"uchar", Type::kUint8},   {"uint8", Type::kUint8},
+      {"short", Type::kInt16}, {"int16", Type::kInt16},   {"ushort", Type::kUint16}, {"uint16", Type::kUint16},
+      {"int", Type::kInt32},   {"int32", Type::kInt32},   {"uint", Type::kUint32},   {"uint32", Type::kUint32},
+      {"float", Type::kFloat}, {"float32", Type::kFloat}, {"double", Type::kDouble}, {"float64", Type::kDouble}};
+  const auto* it = std::find_if(std::begin(names), std::end(names), [&](const auto& n) { return name == n.first; });
   if (it == std::end(names)) return false;
   type = it->second;
   return true;
@@ -110,21 +107,19 @@ Result<Header, std::string> ParseHeader(std::string_view file) {
   for (std::size_t line_number = 1;; ++line_number) {
     const std::size_t end = file.find('\n', begin);
     if (end == std::string_view::npos) {
-      return unexpected(std::string(
-          "the PLY header has no end_header; the file is truncated or no PLY: export it again"));
+      return unexpected(
+          std::string("the PLY header has no end_header; the file is truncated or no PLY: export it again"));
     }
     std::string line(file.substr(begin, end - begin));
     if (!line.empty() && line.back() == '\r') line.pop_back();
     begin = end + 1;
     if (line_number == 1) {
-      if (line != "ply")
-        return unexpected(std::string("not a PLY file; give it the extension of its format"));
+      if (line != "ply") return unexpected(std::string("not a PLY file; give it the extension of its format"));
     } else if (line == "end_header") {
       header.size = begin;
       return header;
     } else if (!ParseHeaderLine(line, file.size(), header)) {
-      return unexpected(At(line_number) +
-                        "not understood in a PLY 1.0 header; export the mesh again");
+      return unexpected(At(line_number) + "not understood in a PLY 1.0 header; export the mesh again");
     }
   }
 }
@@ -195,20 +190,16 @@ class NumberReader {
 bool ReadProperty(NumberReader& reader, const Property& property, std::vector<double>& values) {
   double count = 1;
   if (property.is_list && !reader.Next(property.count_type, count)) return false;
-  if (!(count >= 0 && count <= static_cast<double>(reader.bytes_left())) ||
-      count != std::floor(count))
-    return false;
+  if (!(count >= 0 && count <= static_cast<double>(reader.bytes_left())) || count != std::floor(count)) return false;
   values.resize(static_cast<std::size_t>(count));
-  return std::all_of(values.begin(), values.end(),
-                     [&](double& v) { return reader.Next(property.type, v); });
+  return std::all_of(values.begin(), values.end(), [&](double& v) { return reader.Next(property.type, v); });
 }
 
 bool AddPolygon(const std::vector<double>& corners, Mesh& mesh) {
   if (corners.size() < 3 || corners.size() > kMaxPolygon) return false;
   std::vector<int> polygon;
   for (const double c : corners) {
-    if (!(c >= 0 && c < static_cast<double>(mesh.vertices.size())) || c != std::floor(c))
-      return false;
+    if (!(c >= 0 && c < static_cast<double>(mesh.vertices.size())) || c != std::floor(c)) return false;
     polygon.push_back(static_cast<int>(c));
   }
   AppendPolygon(polygon, mesh);
@@ -244,12 +235,11 @@ Result<Mesh, std::string> ParsePly(std::string_view file, double metres_per_unit
   for (const Element& element : header->elements) {
     for (std::size_t i = 0; i < element.count; ++i) {
       if (ReadRecord(reader, element, metres_per_unit, mesh)) continue;
-      return unexpected(element.name + " " + std::to_string(i) + " of " +
-                        std::to_string(element.count) +
+      return unexpected(element.name + " " + std::to_string(i) + " of " + std::to_string(element.count) +
                         " is truncated or invalid; export the mesh again");
     }
   }
   return mesh;
 }
 
-}  // namespace wirepose::tools
+}  // namespace wirepose::mesh

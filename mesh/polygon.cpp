@@ -1,8 +1,8 @@
-#include "tools/model_compiler/polygon.h"
+#include "mesh/polygon.h"
 
 #include <algorithm>
 
-namespace wirepose::tools {
+namespace wirepose::mesh {
 namespace {
 
 using Eigen::Vector3d;
@@ -11,15 +11,13 @@ Vector3d NewellNormal(const Mesh& mesh, const std::vector<int>& polygon) {
   Vector3d normal = Vector3d::Zero();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vector3d origin = mesh.vertices[polygon[0]];
-    normal += (mesh.vertices[polygon[i]] - origin)
-                  .cross(mesh.vertices[polygon[(i + 1) % polygon.size()]] - origin);
+    normal += (mesh.vertices[polygon[i]] - origin).cross(mesh.vertices[polygon[(i + 1) % polygon.size()]] - origin);
   }
   return normal;
 }
 
 // Corner `at` of the polygon is an ear when it is convex and no other corner lies in its triangle.
-bool IsEar(const Mesh& mesh, const std::vector<int>& polygon, std::size_t at,
-           const Vector3d& normal) {
+bool IsEar(const Mesh& mesh, const std::vector<int>& polygon, std::size_t at, const Vector3d& normal) {
   const std::size_t n = polygon.size();
   const std::array<int, 3> ear{polygon[(at + n - 1) % n], polygon[at], polygon[(at + 1) % n]};
   if (mesh.AreaNormal(ear).dot(normal) <= 0) return false;
@@ -49,4 +47,4 @@ void AppendPolygon(const std::vector<int>& polygon, Mesh& mesh) {
   mesh.triangles.push_back({rest[0], rest[1], rest[2]});
 }
 
-}  // namespace wirepose::tools
+}  // namespace wirepose::mesh

@@ -1,20 +1,20 @@
 // Mesh files: PLY by our own reader, every other format by assimp.
-#ifndef WIREPOSE_TOOLS_MODEL_COMPILER_MESH_READER_H_
-#define WIREPOSE_TOOLS_MODEL_COMPILER_MESH_READER_H_
+#ifndef WIREPOSE_MESH_MESH_READER_H_
+#define WIREPOSE_MESH_MESH_READER_H_
 
 #include <filesystem>
 #include <string>
 
 #include "base/result.h"
-#include "tools/model_compiler/mesh.h"
+#include "mesh/mesh.h"
 
-namespace wirepose::tools {
+namespace wirepose::mesh {
 
 // All triangles of the file (polygons are split, scene nodes applied), coordinates times
 // `metres_per_unit`. As written: vertices may be repeated, triangles degenerate or wound either
-// way; see mesh_cleaning.h. The error names file, problem and remedy.
+// way; see tools/model_compiler/mesh_cleaning.h. The error names file, problem and remedy.
 Result<Mesh, std::string> ReadMesh(const std::filesystem::path& file, double metres_per_unit);
 
-}  // namespace wirepose::tools
+}  // namespace wirepose::mesh
 
-#endif  // WIREPOSE_TOOLS_MODEL_COMPILER_MESH_READER_H_
+#endif  // WIREPOSE_MESH_MESH_READER_H_

@@ -1,0 +1,1 @@
+void Offend(const int* value) { delete value; }

@@ -1,0 +1,3 @@
+#include <cstdlib>
+
+void Offend(void* block) { std::free(block); }

@@ -1,0 +1,3 @@
+#include <cstdlib>
+
+void* Offend(std::size_t size) { return std::malloc(size); }

@@ -1,0 +1,1 @@
+int* Offend(int value) { return new int(value); }

@@ -1,0 +1,1 @@
+void Offend(int value) { throw value; }
