@@ -1,5 +1,8 @@
 #include "model/prepared_model.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace wirepose {
 namespace {
 
@@ -48,6 +51,84 @@ bool IsConvex(const ModelView& view) {
   return true;
 }
 
+constexpr int kCells = PreparedModel::kCells;
+
+// The cell of the unit cube's surface through which a direction leaves.
+std::size_t CellOf(const Vector3& d) {
+  int axis = 0;
+  for (int i = 1; i < 3; ++i) {
+    if (std::abs(d[i]) > std::abs(d[axis])) axis = i;
+  }
+  const float scale = std::abs(d[axis]) > 0 ? 1 / std::abs(d[axis]) : 0;
+  const auto cell = [&](int i) {
+    return std::clamp(static_cast<int>((d[(axis + i) % 3] * scale + 1) * 0.5F * kCells), 0, kCells - 1);
+  };
+  const int face = 2 * axis + (d[axis] > 0 ? 1 : 0);
+  return static_cast<std::size_t>((face * kCells + cell(1)) * kCells + cell(2));
+}
+
+// The middle of a cell; inverse of CellOf.
+Vector3 DirectionOf(std::size_t cell) {
+  const auto c = static_cast<int>(cell);
+  const int face = c / (kCells * kCells);
+  Vector3 d;
+  d[face / 2] = face % 2 != 0 ? 1.0F : -1.0F;
+  d[(face / 2 + 1) % 3] = (static_cast<float>(c / kCells % kCells) + 0.5F) * 2 / kCells - 1;
+  d[(face / 2 + 2) % 3] = (static_cast<float>(c % kCells) + 0.5F) * 2 / kCells - 1;
+  return d;
+}
+
+void IndexAspects(PreparedModel& model) {
+  for (std::size_t cell = 0; cell < model.nearest_aspect.size(); ++cell) {
+    const Vector3 d = DirectionOf(cell);
+    float best = -1e9F;
+    for (std::size_t a = 0; a < model.view.aspects.size(); ++a) {
+      const auto& direction = model.view.aspects[a].direction;
+      const float cosine = d.dot(Vector3(direction[0], direction[1], direction[2]));
+      if (cosine <= best) continue;
+      best = cosine;
+      model.nearest_aspect[cell] = static_cast<std::uint8_t>(a);
+    }
+  }
+}
+
+PreparedMember PrepareMember(const PreparedModel& model, const PreparedEdge& base, const ModelSetMember& member) {
+  const PreparedEdge& other = model.edges[member.edge];
+  PreparedMember out{member.distance_m, member.angle_rad, member.farthest_end_m, other.length_m, member.edge};
+  const float limit = 0.02F * model.view.diameter_m;
+  for (std::uint8_t i = 0; i < 2; ++i) {
+    for (std::uint8_t j = 0; j < 2; ++j) {
+      if (((i == 0 ? base.a : base.b) - (j == 0 ? other.a : other.b)).squaredNorm() >= limit * limit) continue;
+      out.base_end = i;
+      out.other_end = j;
+    }
+  }
+  return out;
+}
+
+// Sets of representative base edges, members at a corner first, each part by rising distance.
+void PrepareSets(PreparedModel& model) {
+  model.sets.clear();
+  model.members.clear();
+  for (const ModelLineSet& set : model.view.line_sets) {
+    const PreparedEdge& base = model.edges[set.base_edge];
+    if (!base.representative) continue;
+    const std::size_t first = model.members.size();
+    for (const ModelSetMember& member : model.view.set_members.subspan(set.first_member, set.member_count)) {
+      model.members.push_back(PrepareMember(model, base, member));
+    }
+    const auto begin = model.members.begin() + first;
+    std::sort(begin, model.members.end(), [](const PreparedMember& p, const PreparedMember& q) {
+      if ((p.base_end == 2) != (q.base_end == 2)) return q.base_end == 2;
+      return p.distance_m != q.distance_m ? p.distance_m < q.distance_m : p.other_edge < q.other_edge;
+    });
+    const auto corner_end = std::find_if(begin, model.members.end(), [](const PreparedMember& m) { return m.base_end == 2; });
+    model.sets.push_back({set.kind, set.base_edge, static_cast<std::uint16_t>(first),
+                          static_cast<std::uint16_t>(corner_end - model.members.begin()),
+                          static_cast<std::uint16_t>(model.members.size())});
+  }
+}
+
 }  // namespace
 
 bool PreparedModel::FacesEye(std::size_t edge, const Vector3& eye) const {
@@ -56,19 +137,12 @@ bool PreparedModel::FacesEye(std::size_t edge, const Vector3& eye) const {
   return e.face[1] == kNoFace || IsTowards(view.faces[e.face[0]], eye) || IsTowards(view.faces[e.face[1]], eye);
 }
 
+const EdgeBits& PreparedModel::EdgesSeenFrom(const Vector3& eye) const {
+  return view.aspects[nearest_aspect[CellOf(eye - centre)]].visible_edges;
+}
+
 EdgeBits PreparedModel::VisibleEdges(const Vector3& eye) const {
-  const Vector3 direction = eye - centre;
-  const ModelAspect* nearest = nullptr;
-  float best = 0;
-  for (const ModelAspect& aspect : view.aspects) {
-    const float cosine = direction.dot(Vector3(aspect.direction[0], aspect.direction[1], aspect.direction[2]));
-    if (nearest != nullptr && cosine <= best) continue;
-    best = cosine;
-    nearest = &aspect;
-  }
-  EdgeBits bits{};
-  if (nearest == nullptr) return bits;
-  bits = nearest->visible_edges;
+  EdgeBits bits = EdgesSeenFrom(eye);
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (!FacesEye(e, eye)) bits[e / 32] &= ~(1U << (e % 32));
   }
@@ -99,6 +173,8 @@ void PrepareModel(const ModelView& view, PreparedModel& out) {
   }
   out.convex = IsConvex(view);
   MarkRepresentatives(out);
+  PrepareSets(out);
+  IndexAspects(out);
 }
 
 }  // namespace wirepose

@@ -22,23 +22,47 @@ using EdgeBits = std::array<std::uint32_t, kMaxModelEdges / 32>;
 
 inline bool HasEdge(const EdgeBits& bits, std::size_t edge) { return ((bits[edge / 32] >> (edge % 32)) & 1U) != 0; }
 
+// One member of a model line set, as matching reads it.
+struct PreparedMember {
+  float distance_m = 0, angle_rad = 0, farthest_end_m = 0;
+  float other_length_m = 0;
+  std::uint16_t other_edge = 0;
+  // Which ends of base and other edge share a corner: 0 a, 1 b; 2: none.
+  std::uint8_t base_end = 2, other_end = 2;
+};
+
+// A line set with a representative base edge; members [first, corner_end) share a corner with the base edge and all
+// members [first, end) follow each other by rising distance (the corner ones first, whose distance is zero).
+struct PreparedSet {
+  LineSetKind kind = LineSetKind::kParallel;
+  std::uint16_t base_edge = 0;
+  std::uint16_t first = 0, corner_end = 0, end = 0;
+};
+
 struct PreparedModel {
   ModelView view;
   Vector3 centre = Vector3::Zero();  // of the bounding box
   FixedVector<PreparedEdge, kMaxModelEdges> edges;
   // Symmetries as poses, the identity first.
   FixedVector<Pose, kMaxModelSymmetries> symmetries;
+  FixedVector<PreparedSet, kMaxModelLineSets> sets;
+  FixedVector<PreparedMember, kMaxModelSetMembers> members;
   std::array<Vector3, 8> corners;  // of the bounding box
   bool convex = false;             // no face can hide an edge of another one
+  // Nearest aspect of a direction, by cube face and cell.
+  static constexpr int kCells = 12;
+  std::array<std::uint8_t, 6 * kCells * kCells> nearest_aspect{};
 
   // Edges that an observer at `eye` (model frame, m) sees: from the model's table of aspects, without the edges whose
-  // faces both turn away from this very place. O(aspects + edges).
+  // faces both turn away from this very place. O(edges).
   [[nodiscard]] EdgeBits VisibleEdges(const Vector3& eye) const;
+  // The same without the second test: what the table says for this direction. O(1).
+  [[nodiscard]] const EdgeBits& EdgesSeenFrom(const Vector3& eye) const;
   // True when a face of the edge turns towards the eye; it may still be hidden by other faces.
   [[nodiscard]] bool FacesEye(std::size_t edge, const Vector3& eye) const;
 };
 
-// Fills `out`. O(edges^2 * symmetries).
+// Fills `out`. O(edges^2 * symmetries + cells * aspects).
 void PrepareModel(const ModelView& view, PreparedModel& out);
 
 }  // namespace wirepose

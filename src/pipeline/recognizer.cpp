@@ -155,10 +155,11 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   }
   timer.Done(Stage::kRefine);
 
-  const VerifyInput input{camera(), left_edges_, right_edges_, left_normalized_, right_normalized_};
+  const VerifyInput input{camera(), left_edges_, right_edges_, left_normalized_, right_normalized_,
+                          left_smooth_, right_smooth_};
   for (Candidate& candidate : refined) {
     GatherEvidence(params_.verify, input, model, candidate.pose.T_camera_model, verify_scratch_, candidate.evidence);
-    candidate.score = ScoreOf(params_.select.score, candidate.evidence, candidate.pose);
+    candidate.score = ScoreOf(params_.select.score, candidate.evidence);
     candidates_.Push(candidate);
   }
   timer.Done(Stage::kVerify);

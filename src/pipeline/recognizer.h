@@ -108,6 +108,7 @@ class Recognizer {
   [[nodiscard]] std::size_t detection_count() const { return accepted_.size(); }
   // The corresponding line set behind detection i: which image line lies on which model edge.
   [[nodiscard]] std::span<const SetMember> line_set(std::size_t i) const;
+  [[nodiscard]] const PreparedModel& prepared_model(std::size_t i) const { return models_[i]; }
   // Verified candidates of all models, by falling score: what was nearly reported, and why not.
   [[nodiscard]] std::span<const Candidate> candidates() const;
 

@@ -1,47 +1,35 @@
 #include "stages/correspondences.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
 namespace wirepose {
 namespace {
 
-// Whose ends meet in the corner that two model edges share; kNone when they share none.
-struct Corner {
-  LineEnd base = LineEnd::kNone;
-  LineEnd other = LineEnd::kNone;
-};
-
-Corner SharedCorner(const PreparedEdge& p, const PreparedEdge& q, float tolerance) {
-  const float limit = tolerance * tolerance;
-  if ((p.a - q.a).squaredNorm() < limit) return {LineEnd::kA, LineEnd::kA};
-  if ((p.a - q.b).squaredNorm() < limit) return {LineEnd::kA, LineEnd::kB};
-  if ((p.b - q.a).squaredNorm() < limit) return {LineEnd::kB, LineEnd::kA};
-  if ((p.b - q.b).squaredNorm() < limit) return {LineEnd::kB, LineEnd::kB};
-  return {};
-}
-
 class Matcher {
  public:
   Matcher(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
           const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out)
-      : params_(params), camera_(camera), model_(model), lines_(lines), sets_(sets), out_(out) {}
+      : params_(params), camera_(camera), model_(model), lines_(lines), sets_(sets), out_(out) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (lines[i].has_depth) slack_[i] = SlackOf(lines[i]);
+    }
+  }
 
   void MatchBase(std::size_t base) {
     const Line3& line = lines_[base];
     const float length = line.Length();
-    const float slack = Slack(line);
-    for (const ModelLineSet& set : model_.view.line_sets) {
+    const float slack = slack_[base];
+    for (const PreparedSet& set : model_.sets) {
       const PreparedEdge& edge = model_.edges[set.base_edge];
-      if (!edge.representative || !Fits(length, slack, edge.length_m, params_.min_cover)) continue;
+      if (!Fits(length, slack, edge.length_m, params_.min_cover)) continue;
       base_cover_ = std::min(1.0F, length / edge.length_m);
       // Both sets of one base edge are combined, since they share it (paper: "combined if they share a line").
       if (set.base_edge != assigned_edge_) Promote();
       assigned_edge_ = set.base_edge;
       for (const ImageLinePair& pair : sets_.OfBase(base)) {
-        if (pair.metric && pair.kind != set.kind) continue;
-        if (!pair.metric && set.kind != LineSetKind::kIntersecting) continue;
         if (CanRank(pair)) MatchPair(set, pair);
       }
     }
@@ -50,7 +38,7 @@ class Matcher {
 
  private:
   // What the length of a line may be wrong by: its ends by a pixel or two, its depth by its sigma.
-  [[nodiscard]] float Slack(const Line3& line) const {
+  [[nodiscard]] float SlackOf(const Line3& line) const {
     const float metres_per_px = 0.5F * (line.a.z() + line.b.z()) / static_cast<float>(camera_.f);
     return params_.end_tolerance_m + 2 * metres_per_px + params_.sigmas * DirectionSigma(camera_, line) * line.Length();
   }
@@ -62,47 +50,57 @@ class Matcher {
   // False when even the best match of this pair would be dropped.
   [[nodiscard]] bool CanRank(const ImageLinePair& pair) const {
     CorrespondingPair best;
-    best.rank = pair.quality + 2 * params_.cover_gain + params_.junction_gain +
+    best.rank = pair.quality + params_.cover_gain * (1 + base_cover_) + params_.junction_gain +
                 params_.promotion * static_cast<float>(params_.max_promotions);
     return out_.WouldKeep(best);
   }
 
-  void MatchPair(const ModelLineSet& set, const ImageLinePair& pair) {
-    const auto members = model_.view.set_members.subspan(set.first_member, set.member_count);
-    for (const ModelSetMember& member : members) {
-      if (pair.metric ? MetricAgrees(pair, member) : member.nearest_end_m < Near()) Emit(set, member, pair);
+  void MatchPair(const PreparedSet& set, const ImageLinePair& pair) {
+    if (!pair.metric) {
+      if (set.kind != LineSetKind::kIntersecting) return;
+      for (std::size_t i = set.first; i < set.corner_end; ++i) Emit(set, model_.members[i], pair);
+      return;
+    }
+    if (pair.kind != set.kind) return;
+    // Members whose distance agrees: a few of the rest by binary search, and those at a corner when the lines may meet.
+    const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
+    const float high = (pair.distance_m + slack) / (1 - params_.length_tolerance);
+    const float low = (pair.distance_m - slack) / (1 + params_.length_tolerance);
+    MatchRange(set, set.first, set.corner_end, low, high, pair);
+    MatchRange(set, set.corner_end, set.end, low, high, pair);
+  }
+
+  void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, float low, float high, const ImageLinePair& pair) {
+    const PreparedMember* members = model_.members.data();
+    const PreparedMember* from = std::lower_bound(
+        members + begin, members + end, low, [](const PreparedMember& m, float value) { return m.distance_m < value; });
+    for (const PreparedMember* m = from; m != members + end && m->distance_m <= high; ++m) {
+      if (MetricAgrees(pair, *m)) Emit(set, *m, pair);
     }
   }
 
-  [[nodiscard]] float Near() const { return 0.02F * model_.view.diameter_m; }
-
-  [[nodiscard]] bool MetricAgrees(const ImageLinePair& pair, const ModelSetMember& member) const {
+  [[nodiscard]] bool MetricAgrees(const ImageLinePair& pair, const PreparedMember& member) const {
     if (std::abs(pair.angle_rad - member.angle_rad) > params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad) {
       return false;
     }
     const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
-    if (std::abs(pair.distance_m - member.distance_m) > slack + params_.length_tolerance * member.distance_m) return false;
     if (pair.farthest_end_m > member.farthest_end_m * (1 + params_.length_tolerance) + slack) return false;
-    const Line3& other = lines_[pair.other];
-    const PreparedEdge& edge = model_.edges[member.edge];
-    return Fits(other.Length(), Slack(other), edge.length_m, params_.min_other_cover);
+    return Fits(lines_[pair.other].Length(), slack_[pair.other], member.other_length_m, params_.min_other_cover);
   }
 
-  void Emit(const ModelLineSet& set, const ModelSetMember& member, const ImageLinePair& pair) {
+  void Emit(const PreparedSet& set, const PreparedMember& member, const ImageLinePair& pair) {
     CorrespondingPair match;
     match.image_pair = static_cast<std::uint16_t>(&pair - sets_.pairs.data());
     match.base_edge = set.base_edge;
-    match.other_edge = member.edge;
-    match.rank = pair.quality + params_.cover_gain * base_cover_ + (pair.metric ? Agreement(pair, member) : -params_.no_depth_loss);
-    if (pair.base_end != LineEnd::kNone && member.nearest_end_m < Near()) {
-      const Corner corner = SharedCorner(model_.edges[set.base_edge], model_.edges[member.edge], Near());
-      if (corner.base != LineEnd::kNone) {
-        match.junction = 1;
-        match.base_flipped = corner.base == pair.base_end ? 0 : 1;
-        match.rank += params_.junction_gain;
-        Collect(match);
-        return;
-      }
+    match.other_edge = member.other_edge;
+    match.rank = pair.quality + params_.cover_gain * base_cover_ +
+                 (pair.metric ? Agreement(pair, member) : -params_.no_depth_loss);
+    if (pair.base_end != LineEnd::kNone && member.base_end != 2) {
+      match.junction = 1;
+      match.base_flipped = member.base_end == static_cast<std::uint8_t>(pair.base_end) ? 0 : 1;
+      match.rank += params_.junction_gain;
+      Collect(match);
+      return;
     }
     if (!pair.metric) return;
     for (std::uint8_t flipped : {0, 1}) {
@@ -112,11 +110,11 @@ class Matcher {
   }
 
   // Exponent of the Gaussian of V, and the other line's cover.
-  [[nodiscard]] float Agreement(const ImageLinePair& pair, const ModelSetMember& member) const {
+  [[nodiscard]] float Agreement(const ImageLinePair& pair, const PreparedMember& member) const {
     const float angle = (pair.angle_rad - member.angle_rad) / (0.02F + pair.angle_sigma_rad);
     const float distance =
         (pair.distance_m - member.distance_m) / (0.003F + 0.01F * member.distance_m + pair.distance_sigma_m);
-    const float cover = std::min(1.0F, lines_[pair.other].Length() / model_.edges[member.edge].length_m);
+    const float cover = std::min(1.0F, lines_[pair.other].Length() / member.other_length_m);
     return params_.cover_gain * cover - 0.5F * (angle * angle + distance * distance);
   }
 
@@ -149,6 +147,7 @@ class Matcher {
   const Lines3& lines_;
   const ImageLineSets& sets_;
   CorrespondingPairs& out_;
+  std::array<float, kMaxSegments> slack_{};
   // Of the base line and base edge at hand.
   float base_cover_ = 0;
   std::uint16_t assigned_edge_ = kNoFace;

@@ -30,6 +30,7 @@ int EdgeMap::Direction(float dx, float dy) {
 void BuildEdgeMap(const EdgeImage& edges, EdgeMap& out) {
   out.width = edges.width;
   out.height = edges.height;
+  out.threshold = static_cast<float>(edges.threshold);
   std::fill(out.directions.begin(), out.directions.begin() + static_cast<std::ptrdiff_t>(EdgeImage::Index(0, edges.height)),
             std::uint16_t{0});
   // Half widths of a disc of radius 2, row by row. Ridges keep 3 pixels from the border.

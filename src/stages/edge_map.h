@@ -17,6 +17,7 @@ struct EdgeMap {
 
   int width = 0, height = 0;
   std::array<std::uint16_t, kMaxPixels> directions;
+  float threshold = 0;   // gradient from which on a pixel may be an edge in this image, kGradientOne
   float background = 0;  // share of (pixel, direction) pairs that are set: the rate at which a random edge is supported
 
   // Direction index 0..15 of an edge along (dx, dy), without trigonometry: the half turn is cut into eight sectors of

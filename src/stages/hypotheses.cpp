@@ -175,7 +175,7 @@ class HypothesisMaker {
     const Vector3 centre = hypothesis_.R * model_.centre + hypothesis_.t;
     if (centre.z() < params_.min_depth_m) return;
     if (!Covers(*base_edge_, base_->segment) || !Covers(*other_edge_, other_->segment)) return;
-    const EdgeBits visible = model_.VisibleEdges(-(hypothesis_.R.transpose() * hypothesis_.t));
+    const EdgeBits& visible = model_.EdgesSeenFrom(-(hypothesis_.R.transpose() * hypothesis_.t));
     if (!HasEdge(visible, hypothesis_.base_edge) || !HasEdge(visible, hypothesis_.other_edge)) return;
     if (scorer_.Score(hypothesis_.R, hypothesis_.t, visible, hypothesis_.score)) out_.Push(hypothesis_);
   }

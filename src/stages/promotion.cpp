@@ -219,9 +219,10 @@ void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const 
     if (promoter.Promote(h, set)) best.Push(set);
   }
   // Aligned poses meet again: keep the best of each.
+  const float aligned_tolerance = params.aligned_duplicate_share * model.view.diameter_m;
   for (const CorrespondingSet& set : best.Sorted()) {
     bool duplicate = false;
-    for (const CorrespondingSet& k : out) duplicate = duplicate || IsSamePose(model, set.R, set.t, k.R, k.t, tolerance);
+    for (const CorrespondingSet& k : out) duplicate = duplicate || IsSamePose(model, set.R, set.t, k.R, k.t, aligned_tolerance);
     if (!duplicate && !out.try_push_back(set)) break;
   }
 }

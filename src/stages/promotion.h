@@ -12,7 +12,8 @@ struct PromotionParams {
   float min_cosine = 0.97F;    // of the angle between segment and projected edge
   float sigma_px = 0.7F;       // image residuals
   float sigma_disparity_px = 0.5F;  // in addition to the line's own
-  float duplicate_share = 0.04F;    // of the diameter: poses whose box corners are nearer than this are one
+  float duplicate_share = 0.04F;    // of the diameter: hypotheses whose box corners are nearer than this are one ...
+  float aligned_duplicate_share = 0.08F;  // ... and so are aligned sets: refinement would bring them together
   float line_gain = 2.0F;      // rank of each line of the set ...
   float face_gain = 3.0F;      // ... and of each surface it covers, added to the coarse score
 };

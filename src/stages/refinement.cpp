@@ -4,54 +4,26 @@
 #include <array>
 #include <cmath>
 
+#include "stages/edge_profile.h"
+
 namespace wirepose {
 namespace {
-
-constexpr int kMaxRange = 16;
-
-// Bilinear value of a smoothed image. Requires 0 <= x < width - 1, 0 <= y < height - 1.
-float Sample(const SmoothPlane& plane, float x, float y) {
-  const int xi = static_cast<int>(x), yi = static_cast<int>(y);
-  const float fx = x - static_cast<float>(xi), fy = y - static_cast<float>(yi);
-  const std::int16_t* p = plane.data() + yi * kMaxImageWidth + xi;
-  const std::int16_t* q = p + kMaxImageWidth;
-  const auto v = [](std::int16_t s) { return static_cast<float>(s); };
-  const float top = v(p[0]) + fx * (v(p[1]) - v(p[0]));
-  const float bottom = v(q[0]) + fx * (v(q[1]) - v(q[0]));
-  return top + fy * (bottom - top);
-}
 
 // Signed distance along `normal` to the most plausible edge near `p`: strong and close. False when there is none.
 bool FindEdge(const SmoothPlane& plane, int width, int height, const Vector2& p, const Vector2& normal, int range,
               float min_gradient, float& offset) {
-  const float reach = static_cast<float>(range + 2);
-  const float x0 = p.x() - reach * std::abs(normal.x()), x1 = p.x() + reach * std::abs(normal.x());
-  const float y0 = p.y() - reach * std::abs(normal.y()), y1 = p.y() + reach * std::abs(normal.y());
-  if (x0 < 1 || y0 < 1 || x1 > static_cast<float>(width - 3) || y1 > static_cast<float>(height - 3)) return false;
-  std::array<float, 2 * kMaxRange + 5> value;
-  const int n = 2 * range + 5;
-  for (int k = 0; k < n; ++k) {
-    const auto s = static_cast<float>(k - range - 2);
-    value[static_cast<std::size_t>(k)] = Sample(plane, p.x() + s * normal.x(), p.y() + s * normal.y());
-  }
-  const auto gradient = [&](int k) {
-    return std::abs(value[static_cast<std::size_t>(k + 1)] - value[static_cast<std::size_t>(k - 1)]);
-  };
+  EdgeProfile profile;
+  if (!profile.Read(plane, width, height, p, normal, range)) return false;
   const float threshold = min_gradient * kGradientOne;
   float best = 0;
-  for (int k = 2; k < n - 2; ++k) {
-    const float here = gradient(k);
-    if (here < threshold) continue;
-    const float before = gradient(k - 1), after = gradient(k + 1);
-    if (here < before || here <= after) continue;
-    const float bend = before - 2 * here + after;
-    const float at = static_cast<float>(k - range - 2) + 0.5F * (before - after) / bend;
+  profile.ForEachPeak(threshold, [&](const EdgePeak& peak) {
     // Strength saturates: beyond some contrast nearness decides.
-    const float score = std::min(here, 8.0F * threshold) * (1 - 0.7F * std::abs(at) / static_cast<float>(range + 1));
-    if (score <= best) continue;
+    const float score = std::min(std::abs(peak.gradient), 8.0F * threshold) *
+                        (1 - 0.7F * std::abs(peak.offset_px) / static_cast<float>(range + 1));
+    if (score <= best) return;
     best = score;
-    offset = at;
-  }
+    offset = peak.offset_px;
+  });
   return best > 0;
 }
 
@@ -80,7 +52,7 @@ class Refiner {
       // Halves early: the first iterations bring most edges close.
       const float range = params_.first_range_px + (params_.last_range_px - params_.first_range_px) * std::sqrt(share);
       const bool last = 3 * i >= 2 * params_.iterations;
-      Measure(T, std::clamp(static_cast<int>(range + 0.5F), 2, kMaxRange));
+      Measure(T, std::clamp(static_cast<int>(range + 0.5F), 2, EdgeProfile::kMaxRange));
       if (last) DropUnqualified();
       Vector6d twist;
       if (rows_.size() < 12 || !Solve(twist)) return;

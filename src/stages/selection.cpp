@@ -25,11 +25,12 @@ bool IsDuplicate(const PreparedModel& model, const Pose& p, const Pose& q) {
 
 }  // namespace
 
-float ScoreOf(const ScoreParams& params, const Evidence& evidence, const RefinedPose& pose) {
+float ScoreOf(const ScoreParams& params, const Evidence& evidence) {
   const float length = std::max(1.0F, evidence.visible_px);
   const float logit = params.bias + params.edge_density * 100 * evidence.edges / length +
                       params.log_length * std::log(length / 300) + params.faces * evidence.faces +
-                      params.silhouette * evidence.silhouette + params.rms * pose.rms_px;
+                      params.contrast * evidence.contrast + params.overrun * evidence.overrun +
+                      params.inside * evidence.inside;
   return 1 / (1 + std::exp(-std::clamp(logit, -30.0F, 30.0F)));
 }
 

@@ -9,15 +9,17 @@
 
 namespace wirepose {
 
-// Score = logistic function of the evidence. The weights are one set for all models and data; they were fitted on
-// simulated kitchens (docs/decisions/0005-score.md), never on recorded test data.
+// Score = logistic function of the evidence. One set of weights for all models and data, fitted to simulated kitchens by
+// tools/evaluation/fit_score.py, never to recorded test data; log_length is given, not fitted: evidence of equal density
+// counts more the longer it is (as in a-contrario detection), which scenes with few sizes of objects cannot teach.
 struct ScoreParams {
-  float bias = -10.0F;
-  float edge_density = 0.28F;  // per log-likelihood unit and 100 px of visible edge
-  float log_length = 1.2F;     // per natural logarithm of visible edge length over 300 px
-  float faces = 0.33F;         // per unit of face evidence
-  float silhouette = 0.04F;    // per unit of silhouette evidence
-  float rms = -0.5F;           // per px of residual after refinement
+  float bias = -10.105F;
+  float edge_density = 0.499F;  // per log-likelihood unit and 100 px of visible edge
+  float log_length = 1.0F;     // per natural logarithm of visible edge length over 300 px
+  float faces = 0.111F;         // per unit of face evidence
+  float contrast = 0.773F;      // per unit of contrast with the surroundings
+  float overrun = -3.432F;      // per unit of overrun share
+  float inside = 4.407F;        // per share of the visible edges that lies in the image
 };
 
 struct SelectParams {
@@ -45,7 +47,7 @@ struct BetterCandidate {
 using Candidates = KeepBest<Candidate, kMaxVerified, BetterCandidate>;
 
 // Probability that the candidate is right.
-float ScoreOf(const ScoreParams& params, const Evidence& evidence, const RefinedPose& pose);
+float ScoreOf(const ScoreParams& params, const Evidence& evidence);
 
 // Work space: which 4 x 4 px blocks of the left image belong to an accepted detection's edges.
 struct ClaimMap {

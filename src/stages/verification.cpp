@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "stages/edge_profile.h"
+
 namespace wirepose {
 namespace {
 
@@ -94,53 +96,102 @@ class EvidenceGatherer {
 
   void Run() {
     out_ = {};
-    SampleVisibleEdges({}, in_.camera, model_, T_, scratch_.front, scratch_.samples);
+    SampleVisibleEdges(params_.samples, in_.camera, model_, T_, scratch_.front, scratch_.samples);
+    for (const EdgeSample& s : scratch_.samples) seen_[s.edge] = true;
     if (!model_.convex) FindFrontTriangles(in_.camera, model_.view, T_, scratch_.front);
     Edges();
     for (std::size_t f = 0; f < model_.view.faces.size(); ++f) Face(f);
-    Silhouette();
+    Overrun();
   }
 
  private:
+  // Support of one model edge: samples in both images, hits at the edge itself and beside it.
+  struct EdgeSupport {
+    float length_px = 0, samples = 0, hits = 0, chances = 0, chance_hits = 0, supported_px = 0;
+  };
+
   void Edges() {
-    std::array<float, kMaxModelEdges> length{}, supported{};
-    float inside = 0, total = 0, support = 0, sum = 0;
-    const float background_l = std::clamp(in_.left_edges.background, 0.03F, 0.5F);
-    const float background_r = std::clamp(in_.right_edges.background, 0.03F, 0.5F);
+    std::array<EdgeSupport, kMaxModelEdges> support{};
+    float inside = 0, total = 0, supported = 0;
     for (const EdgeSample& s : scratch_.samples) {
       total += s.weight_px;
-      const float weight = params_.sample_weight * s.weight_px / 6;
-      bool left = false;
-      if (in_.left_edges.Contains(s.left.x(), s.left.y())) {
-        inside += s.weight_px;
-        left = in_.left_edges.HasEdge(s.left.x(), s.left.y(), EdgeMap::Direction(s.tangent.x(), s.tangent.y()));
-        sum += weight * Gain(left, background_l);
-        length[s.edge] += s.weight_px;
-        if (left) {
-          support += s.weight_px;
-          supported[s.edge] += s.weight_px;
-        }
-      }
-      const float x = s.left.x() - s.disparity;
-      if (!in_.right_edges.Contains(x, s.left.y())) continue;
-      const bool right = in_.right_edges.HasEdge(x, s.left.y(), EdgeMap::Direction(s.tangent_right.x(), s.tangent_right.y()));
-      sum += weight * Gain(right, background_r);
+      if (!in_.left_edges.Contains(s.left.x(), s.left.y())) continue;
+      inside += s.weight_px;
+      support[s.edge].length_px += s.weight_px;
+      if (!Test(s, support[s.edge])) continue;
+      supported += s.weight_px;
+      support[s.edge].supported_px += s.weight_px;
     }
-    out_.edges = sum;
-    out_.support = inside > 0 ? support / inside : 0;
+    EdgeSupport all;
+    for (const EdgeSupport& e : support) {
+      out_.edges += LogRatio(e);
+      all.samples += e.samples;
+      all.hits += e.hits;
+      all.chances += e.chances;
+      all.chance_hits += e.chance_hits;
+    }
+    if (all.samples > 0) out_.contrast = all.hits / all.samples - all.chance_hits / all.chances;
+    out_.support = inside > 0 ? supported / inside : 0;
     out_.inside = total > 0 ? inside / total : 0;
     out_.visible_px = inside;
-    CountSupported(length, supported);
+    CountSupported(support);
   }
 
-  [[nodiscard]] float Gain(bool hit, float background) const {
-    return hit ? std::log(params_.support_rate / background) : std::log((1 - params_.support_rate) / (1 - background));
+  // True when both images show an edge here (the left one alone where the right image does not reach).
+  bool Test(const EdgeSample& s, EdgeSupport& support) {
+    constexpr int kRange = 12;
+    // Windows beside the edge that tell what chance is; the smoothing keeps those within 5 px dependent.
+    constexpr std::array<float, 4> kChances = {-10, -6, 6, 10};
+    const Vector2 normal(-s.tangent.y(), s.tangent.x());
+    if (!left_.Read(in_.left_smooth, in_.camera.width, in_.camera.height, s.left, normal, kRange)) return false;
+    const Vector2 right_at(s.left.x() - s.disparity, s.left.y());
+    const Vector2 right_normal(-s.tangent_right.y(), s.tangent_right.x());
+    const bool right = right_.Read(in_.right_smooth, in_.camera.width, in_.camera.height, right_at, right_normal, kRange);
+    CollectPeaks(left_, in_.left_edges.threshold, left_peaks_);
+    right_peaks_.clear();
+    if (right) CollectPeaks(right_, in_.right_edges.threshold, right_peaks_);
+    for (const float chance : kChances) support.chance_hits += Hits(chance, right) ? 1.0F : 0.0F;
+    support.chances += static_cast<float>(kChances.size());
+    support.samples += 1;
+    const bool hit = Hits(0, right);
+    if (hit) support.hits += 1;
+    return hit;
   }
 
-  void CountSupported(const std::array<float, kMaxModelEdges>& length, const std::array<float, kMaxModelEdges>& supported) {
+  using Peaks = FixedVector<EdgePeak, 2 * EdgeProfile::kMaxRange>;
+
+  static void CollectPeaks(const EdgeProfile& profile, float threshold, Peaks& peaks) {
+    peaks.clear();
+    profile.ForEachPeak(threshold, [&](const EdgePeak& peak) { peaks.push_back(peak); });
+  }
+
+  [[nodiscard]] bool Hits(float at, bool right) const {
+    for (const EdgePeak& l : left_peaks_) {
+      if (std::abs(l.offset_px - at) > params_.max_offset_px) continue;
+      if (!right) return true;
+      for (const EdgePeak& r : right_peaks_) {
+        if (std::abs(r.offset_px - at) < params_.max_offset_px && (l.gradient > 0) == (r.gradient > 0) &&
+            std::abs(l.offset_px - r.offset_px) < params_.max_difference_px) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] float LogRatio(const EdgeSupport& e) const {
+    if (e.samples < 1) return 0;
+    // An edge of one direction within 2 px is what the edge map counts; equal polarity and offset in both images are rarer.
+    const float chance = std::clamp(0.7F * in_.left_edges.background, 0.03F, 0.4F);
+    const float weight = params_.sample_weight * e.length_px / (e.samples * params_.samples.step_px);
+    return weight * (e.hits * std::log(params_.support_rate / chance) +
+                     (e.samples - e.hits) * std::log((1 - params_.support_rate) / (1 - chance)));
+  }
+
+  void CountSupported(const std::array<EdgeSupport, kMaxModelEdges>& support) {
     std::array<std::uint32_t, kMaxModelFaces / 32> faces{};
     for (std::size_t e = 0; e < model_.edges.size(); ++e) {
-      if (length[e] <= 0 || supported[e] < 0.5F * length[e]) continue;
+      if (support[e].length_px <= 0 || support[e].supported_px < 0.5F * support[e].length_px) continue;
       ++out_.supported_edges;
       for (const std::uint16_t face : model_.view.edges[e].face) {
         if (face == kNoFace || !Faces(face)) continue;
@@ -219,61 +270,31 @@ class EvidenceGatherer {
     return IsHidden(model_.view, scratch_.front, eye_, point, image, face, face);
   }
 
-  // Beside each outline edge: does the face's plane go on (against the object) or is the scene behind it farther (for)?
-  void Silhouette() {
-    std::size_t begin = 0;
-    const auto& samples = scratch_.samples;
-    while (begin < samples.size()) {
-      std::size_t end = begin;
-      while (end < samples.size() && samples[end].edge == samples[begin].edge) ++end;
-      OutlineEdge(begin, end);
-      begin = end;
+  // Does the image edge go on where the model edge ends? Looked at 5, 8 and 11 px beyond both ends of long edges.
+  void Overrun() {
+    int ends = 0, overrun = 0;
+    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
+      if (!seen_[e]) continue;
+      const Vector3 a = Project(model_.view.edges[e].vertex[0]), b = Project(model_.view.edges[e].vertex[1]);
+      const Vector2 d = (b - a).head<2>();
+      const float length = d.norm();
+      if (length < 25) continue;
+      const Vector2 u = d / length;
+      for (const float sign : {-1.0F, 1.0F}) {
+        const Vector2 end = sign < 0 ? a.head<2>() : b.head<2>();
+        int inside = 0, hits = 0;
+        for (const float beyond : {5.0F, 8.0F, 11.0F}) {
+          const Vector2 p = end + sign * beyond * u;
+          if (!in_.left_edges.Contains(p.x(), p.y())) continue;
+          ++inside;
+          if (in_.left_edges.HasEdge(p.x(), p.y(), EdgeMap::Direction(u.x(), u.y()))) ++hits;
+        }
+        if (inside < 3) continue;
+        ++ends;
+        if (hits >= 2) ++overrun;
+      }
     }
-  }
-
-  void OutlineEdge(std::size_t begin, std::size_t end) {
-    const ModelEdge& edge = model_.view.edges[scratch_.samples[begin].edge];
-    if (edge.face[1] == kNoFace || Faces(edge.face[0]) == Faces(edge.face[1])) return;  // not on the outline
-    const std::uint16_t f = Faces(edge.face[0]) ? edge.face[0] : edge.face[1];
-    const ModelFace& face = model_.view.faces[f];
-    const PlaneDisparity plane = DisparityOfFace(in_.camera, face, T_);
-    // Outside is where the face is not: away from its middle.
-    const Vector3 middle = Project(model_.view.triangles[face.first_triangle].vertex[0]) +
-                           Project(model_.view.triangles[face.first_triangle].vertex[1]) +
-                           Project(model_.view.triangles[face.first_triangle].vertex[2]);
-    float own = 0, farther = 0;
-    int n = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const EdgeSample& s = scratch_.samples[i];
-      Vector2 normal(-s.tangent.y(), s.tangent.x());
-      if (normal.dot(s.left - middle.head<2>() / 3) < 0) normal = -normal;
-      const Vector2 p = s.left + params_.silhouette_offset_px * normal;
-      AddBackground(plane, static_cast<int>(p.x() + 0.5F), static_cast<int>(p.y() + 0.5F), own, farther, n);
-    }
-    if (n < 3) return;
-    const float contrast = (own - farther) / (std::min(own, farther) + 2 * static_cast<float>(n));
-    out_.silhouette += std::clamp(contrast, -0.5F, 0.5F) * std::sqrt(static_cast<float>(n));
-  }
-
-  // Cost of the plane continued and the best cost at depths behind it.
-  void AddBackground(const PlaneDisparity& plane, int u, int v, float& own, float& farther, int& n) {
-    if (u < 0 || v < 0 || u >= in_.camera.width || v >= in_.camera.height) return;
-    float here = 1e9F;
-    for (const float shift : {-1.0F, 0.0F, 1.0F}) {
-      const float c = PatchCost(in_, plane, u, v, shift);
-      if (c < 0) return;
-      here = std::min(here, c);
-    }
-    const PlaneDisparity frontal{0, 0, plane.At(static_cast<float>(u), static_cast<float>(v))};
-    float behind = 1e9F;
-    for (float share = 0.93F; share > 0.3F; share *= 0.93F) {
-      const float c = PatchCost(in_, frontal, u, v, -(1 - share) * frontal.c - 1.5F);
-      if (c >= 0) behind = std::min(behind, c);
-    }
-    if (behind > 1e8F) return;
-    own += here;
-    farther += behind;
-    ++n;
+    out_.overrun = static_cast<float>(overrun) / static_cast<float>(std::max(ends, 4));
   }
 
   const VerifyParams& params_;
@@ -284,6 +305,9 @@ class EvidenceGatherer {
   Evidence& out_;
   Matrix3 R_;
   Vector3 t_, eye_;
+  std::array<bool, kMaxModelEdges> seen_{};  // edges with samples
+  EdgeProfile left_, right_;
+  Peaks left_peaks_, right_peaks_;
 };
 
 }  // namespace

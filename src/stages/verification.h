@@ -9,19 +9,22 @@
 namespace wirepose {
 
 struct VerifyParams {
-  float support_rate = 0.75F;   // share of a true object's visible edge samples that show an edge
+  SampleParams samples{.step_px = 6};
+  float support_rate = 0.7F;    // share of a true object's visible edge samples that show an edge
   float sample_weight = 0.5F;   // neighbouring samples are not independent
+  float max_offset_px = 1.6F;   // of a supporting image edge from the model edge, in each image ...
+  float max_difference_px = 1.2F;  // ... and between both images
   int face_grid_px = 6;         // spacing of patches on a face
   int max_face_patches = 80;    // per face; the grid widens to fit
   float min_face_px2 = 250;     // smaller faces abstain
-  float silhouette_offset_px = 6;  // how far outside of the outline its background is looked at
 };
 
 // What speaks for and against a pose. All terms are log-likelihood ratios up to calibration: 0 abstains.
 struct Evidence {
-  float edges = 0;        // visible edge samples with and without an image edge, both images
+  float edges = 0;        // visible edge samples with and without an image edge, against the frame's background
+  float contrast = 0;     // share of samples with an edge minus the same share beside the edges, -1..1
   float faces = 0;        // visible faces predict the right image from the left one, compared with shifted depths
-  float silhouette = 0;   // beside the outline the scene is farther away than the object's surface continued
+  float overrun = 0;      // share of edge ends beyond which the image edge goes on, 0..1: clutter has no corners there
   float support = 0;      // share of visible edge length in the left image that shows an edge, 0..1
   float inside = 0;       // share of the visible edges that lies in the left image, 0..1
   float visible_px = 0;   // length of visible edges in the left image
@@ -35,6 +38,8 @@ struct VerifyInput {
   const EdgeMap& right_edges;
   const NormalizedPlane& left;
   const NormalizedPlane& right;
+  const SmoothPlane& left_smooth;
+  const SmoothPlane& right_smooth;
 };
 
 struct VerifyScratch {
@@ -43,9 +48,10 @@ struct VerifyScratch {
 };
 
 // Lines place an object but do not decide its presence: random poses reach high support in clutter. So evidence grows
-// with length, unsupported edges count against, each face must be photo-consistent at its own depth rather than at
-// others (textured faces vote, blank ones abstain), and beside the silhouette the depth must drop: on a cabinet front or
-// a poster it goes on. What lies outside an image abstains. O(samples * triangles + patches).
+// with length against the frame's background rate, unsupported edges count against, and the same test at places beside
+// the edges tells how often mere texture passes it (a-contrario, after LSD: Grompone von Gioi et al. 2012). An edge supports when both images show it, of equal polarity and at equal offset. Each face must
+// be photo-consistent at its own depth rather than at others (textured faces vote, blank ones abstain). Image edges that
+// overrun the model's corners are counted. What lies outside an image abstains. O(samples * triangles + patches).
 void GatherEvidence(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model,
                     const Pose& T_camera_model, VerifyScratch& scratch, Evidence& out);
 

@@ -10,6 +10,7 @@
 
 #include "tools/cli/command.h"
 #include "tools/cli/recognizer_overlay.h"
+#include "tools/evaluation/candidate_log.h"
 #include "tools/evaluation/evaluate.h"
 #include "tools/evaluation/evaluation_json.h"
 #include "tools/evaluation/results_csv.h"
@@ -25,6 +26,7 @@ struct EvalArguments {
   fs::path out;
   fs::path json;     // empty: none
   fs::path overlay;  // folder; empty: none
+  fs::path candidates;  // empty: none
 };
 
 // A long run must not fail at its last step.
@@ -69,9 +71,15 @@ void WriteJson(const fs::path& file, const evaluation::Evaluation& evaluation) {
 void RunEval(const EvalArguments& arguments) {
   CheckWritable(arguments.out);
   if (!arguments.json.empty()) CheckWritable(arguments.json);
+  std::unique_ptr<evaluation::CandidateLog> log;
+  if (!arguments.candidates.empty()) {
+    CheckWritable(arguments.candidates);
+    log = std::make_unique<evaluation::CandidateLog>(arguments.candidates);
+  }
   const auto observer = [&](const evaluation::FrameView& view) -> Result<void, std::string> {
     ShowProgress(view);
     if (!arguments.overlay.empty()) DrawFrame(view, arguments);
+    if (log) log->Add(view);
     return {};
   };
   const auto evaluation = evaluation::Evaluate(arguments.options, observer);
@@ -99,6 +107,8 @@ void AddEvalCommand(CLI::App& app) {
   eval->add_option("--out", arguments->out, "Detections, as BOP results (CSV)")->required();
   eval->add_option("--json", arguments->json, "All measures, stage times and list use (JSON)");
   eval->add_option("--overlay", arguments->overlay, "Folder for a picture of every frame");
+  eval->add_option("--candidates", arguments->candidates,
+                   "All verified candidates with their evidence (CSV), to fit the score to");
   eval->add_option("--limit", arguments->options.frame_limit, "Stop after so many frames (0: all)")
       ->check([](const std::string& text) {
         return text.starts_with('-') ? std::string("must not be negative") : std::string();
