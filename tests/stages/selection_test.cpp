@@ -100,26 +100,30 @@ TEST_F(SelectionTest, OverflowKeepsTheBestAndCounts) {
 
 TEST(Score, IsAProbabilityThatGrowsWithEvidence) {
   const ScoreParams params;
-  RefinedPose pose;
-  pose.rms_px = 0.5F;
-  Evidence weak, strong;
-  weak.visible_px = strong.visible_px = 700;
+  Evidence weak;
+  weak.visible_px = 700;
   weak.edges = 20;
-  strong.edges = 120;
-  strong.faces = 6;
-  EXPECT_LT(ScoreOf(params, weak, pose), ScoreOf(params, strong, pose));
-  RefinedPose sloppy = pose;
-  sloppy.rms_px = 3;
-  EXPECT_LT(ScoreOf(params, strong, sloppy), ScoreOf(params, strong, pose));
+  weak.inside = 1;
+  const float score = ScoreOf(params, weak);
+  const auto with = [&](float Evidence::*term, float value) {
+    Evidence e = weak;
+    e.*term = value;
+    return ScoreOf(params, e);
+  };
+  EXPECT_GT(with(&Evidence::edges, 120), score);
+  EXPECT_GT(with(&Evidence::faces, 6), score);
+  EXPECT_GT(with(&Evidence::contrast, 0.6F), score);
+  EXPECT_LT(with(&Evidence::overrun, 0.5F), score);
+  EXPECT_LT(with(&Evidence::inside, 0.5F), score);
   Random random(1);
   for (int k = 0; k < 1000; ++k) {
     Evidence e;
     e.edges = static_cast<float>(1000 * testing::Gaussian(random));
     e.faces = static_cast<float>(1000 * testing::Gaussian(random));
-    e.silhouette = static_cast<float>(1000 * testing::Gaussian(random));
+    e.contrast = static_cast<float>(random.Uniform(-1, 1));
     e.visible_px = static_cast<float>(random.Uniform(0, 3000));
-    const float score = ScoreOf(params, e, pose);
-    ASSERT_TRUE(score >= 0 && score <= 1);
+    const float any = ScoreOf(params, e);
+    ASSERT_TRUE(any >= 0 && any <= 1);
   }
 }
 

@@ -15,11 +15,11 @@ using testing::TestModel;
 
 class VerificationTest : public ::testing::Test {
  protected:
-  Evidence Gather(const RenderedScene& scene, const Pose& T, const VerifyParams& params = {}) {
+  Evidence Gather(const RenderedScene& scene, const Pose& T) {
     Evidence evidence;
-    GatherEvidence(params,
+    GatherEvidence({},
                    {scene.camera, scene.left->map, scene.right->map, scene.left->normalized,
-                    scene.right->normalized},
+                    scene.right->normalized, scene.left->smooth, scene.right->smooth},
                    *model_, T, *scratch_, evidence);
     return evidence;
   }
@@ -75,16 +75,32 @@ TEST_F(VerificationTest, BlankFacesSayLess) {
   EXPECT_LT(blank, textured);
 }
 
-// The wall is half a metre behind the object: beside the outline the depth drops.
-TEST_F(VerificationTest, SilhouetteSpeaksForAnObjectInFrontOfAWall) {
+// Slid along its own long edges the model's corners lie where the image's edges go on.
+TEST_F(VerificationTest, OverrunCornersSpeakAgainst) {
   Random random(4);
   const Pose T = testing::GoodView(random, *model_);
-  const RenderedScene scene = Show(T, sim::Texture::kLabel, 8);
-  // Beyond the reach of the normalisation (7 px) and of a patch (3 px): nearer, the object's own
-  // brightness makes a dull wall look as if it moved with the object.
-  VerifyParams params;
-  params.silhouette_offset_px = 12;
-  EXPECT_GT(Gather(scene, T, params).silhouette, 1);
+  const RenderedScene scene = Show(T, sim::Texture::kPlain, 8);
+  const float right = Gather(scene, T).overrun;
+  EXPECT_LT(right, 0.35F);
+  for (const double shift : {-0.06, 0.06}) {
+    EXPECT_GT(Gather(scene, T * Pose{Matrix3d::Identity(), {shift, 0, 0}}).overrun, right) << shift;
+  }
+}
+
+// More edges at the model's edges than beside them.
+TEST_F(VerificationTest, ContrastWithTheSurroundings) {
+  Random random(8);
+  const Pose T = testing::GoodView(random, *model_);
+  const RenderedScene scene = Show(T, sim::Texture::kLabel, 9);
+  EXPECT_GT(Gather(scene, T).contrast, 0.3F);
+  double sum = 0;
+  const int count = Cases(50);
+  for (int k = 0; k < count; ++k) {
+    sum += static_cast<double>(Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1),
+                                                             random.Uniform(0.03, 0.1)))
+                                   .contrast);
+  }
+  EXPECT_LT(sum / count, 0.2);
 }
 
 TEST_F(VerificationTest, NothingInTheImagesSpeaksAgainst) {
@@ -114,7 +130,7 @@ TEST_F(VerificationTest, OutsideAbstains) {
   const Evidence outside = Gather(scene, T);
   EXPECT_EQ(outside.edges, 0);
   EXPECT_EQ(outside.faces, 0);
-  EXPECT_EQ(outside.silhouette, 0);
+  EXPECT_EQ(outside.overrun, 0);
   EXPECT_EQ(outside.inside, 0);
   EXPECT_EQ(outside.visible_px, 0);
 }
@@ -131,8 +147,9 @@ TEST_F(VerificationTest, AnyPoseGivesFiniteEvidence) {
     const Pose T{testing::AnyRotation(random),
                  Vector3d(random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-0.5, 3))};
     const Evidence e = Gather(scene, T);
-    EXPECT_TRUE(std::isfinite(e.edges) && std::isfinite(e.faces) && std::isfinite(e.silhouette));
+    EXPECT_TRUE(std::isfinite(e.edges) && std::isfinite(e.faces) && std::isfinite(e.contrast));
     EXPECT_TRUE(e.support >= 0 && e.support <= 1.001F && e.inside >= 0 && e.inside <= 1.001F);
+    EXPECT_TRUE(e.overrun >= 0 && e.overrun <= 1);
     EXPECT_LE(e.supported_faces, 6);
   }
 }
