@@ -37,8 +37,8 @@ inline double Percentile(std::vector<double> values, double share) {
 }
 
 // Adds p50, p99 and max over repetitions to a benchmark's row.
-inline benchmark::internal::Benchmark* WithPercentiles(benchmark::internal::Benchmark* b) {
-  return b->Unit(benchmark::kMillisecond)
+inline void WithPercentiles(benchmark::internal::Benchmark* b) {
+  b->Unit(benchmark::kMillisecond)
       ->Repetitions(15)
       ->ReportAggregatesOnly(true)
       ->ComputeStatistics("p50", [](const std::vector<double>& v) { return Percentile(v, 0.5); })

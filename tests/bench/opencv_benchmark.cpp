@@ -29,7 +29,7 @@ void Lsd(benchmark::State& state) {
   for (auto _ : state) detector->detect(image, lines);
   state.counters["segments"] = static_cast<double>(lines.size());
 }
-WithPercentiles(benchmark::RegisterBenchmark("opencv/LSD_one_image", Lsd));
+BENCHMARK(Lsd)->Name("opencv/LSD_one_image")->Apply(WithPercentiles);
 
 #ifdef WIREPOSE_HAS_XIMGPROC
 void Fld(benchmark::State& state) {
@@ -40,7 +40,7 @@ void Fld(benchmark::State& state) {
   for (auto _ : state) detector->detect(image, lines);
   state.counters["segments"] = static_cast<double>(lines.size());
 }
-WithPercentiles(benchmark::RegisterBenchmark("opencv/FastLineDetector_one_image", Fld));
+BENCHMARK(Fld)->Name("opencv/FastLineDetector_one_image")->Apply(WithPercentiles);
 #endif
 
 cv::Mat DenseDisparity() {
@@ -55,10 +55,10 @@ void Sgbm(benchmark::State& state) {
   cv::setNumThreads(1);
   for (auto _ : state) benchmark::DoNotOptimize(DenseDisparity().data);
 }
-WithPercentiles(benchmark::RegisterBenchmark("opencv/StereoSGBM", Sgbm));
+BENCHMARK(Sgbm)->Name("opencv/StereoSGBM")->Apply(WithPercentiles);
 
 #ifdef WIREPOSE_HAS_SURFACE_MATCHING
-// Points with normals of one model's faces, about 5 mm apart.
+// Points with normals of one model's faces, about 1 cm apart.
 cv::Mat ModelPoints(const ModelView& model) {
   cv::Mat points(0, 6, CV_32F);
   for (const ModelTriangle& t : model.triangles) {
@@ -83,8 +83,8 @@ cv::Mat ScenePoints() {
   const cv::Mat disparity = DenseDisparity();
   const RectifiedCamera& camera = WarmRecognizer().camera();
   cv::Mat points(0, 3, CV_32F);
-  for (int y = 0; y < disparity.rows; y += 4) {
-    for (int x = 0; x < disparity.cols; x += 4) {
+  for (int y = 0; y < disparity.rows; y += 8) {
+    for (int x = 0; x < disparity.cols; x += 8) {
       const double d = disparity.at<std::int16_t>(y, x) / 16.0;
       if (d < 20) continue;
       const Vector3 p = camera.Triangulate(x, y, d).cast<float>();
@@ -97,20 +97,21 @@ cv::Mat ScenePoints() {
   return with_normals;
 }
 
-// One model; the training and the dense stereo before it are not counted.
+// One model, at a coarse setting: the usual one takes minutes. The training and the dense stereo
+// before it are not counted.
 void PointPairFeatures(benchmark::State& state) {
   cv::setNumThreads(1);
-  cv::ppf_match_3d::PPF3DDetector detector(0.05, 0.05);
+  cv::ppf_match_3d::PPF3DDetector detector(0.1, 0.1);
   detector.trainModel(ModelPoints(Models()[0].View()));
   const cv::Mat scene = ScenePoints();
   std::vector<cv::ppf_match_3d::Pose3DPtr> poses;
   for (auto _ : state) detector.match(scene, poses, 1.0 / 10, 0.03);
   state.counters["points"] = scene.rows;
 }
-benchmark::internal::Benchmark* const kPointPairs =
-    benchmark::RegisterBenchmark("opencv/surface_matching_one_model", PointPairFeatures)
-        ->Unit(benchmark::kMillisecond)
-        ->Iterations(1);
+BENCHMARK(PointPairFeatures)
+    ->Name("opencv/surface_matching_one_model")
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
 #endif
 
 }  // namespace

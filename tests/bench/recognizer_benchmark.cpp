@@ -39,7 +39,7 @@ void WholeFrame(benchmark::State& state) {
     benchmark::DoNotOptimize(Result().detections.size());
   }
 }
-WithPercentiles(benchmark::RegisterBenchmark("recognizer/whole_frame", WholeFrame));
+BENCHMARK(WholeFrame)->Name("recognizer/whole_frame")->Apply(WithPercentiles);
 
 }  // namespace
 

@@ -88,12 +88,12 @@ void LineSets(benchmark::State& state) {
   state.counters["pairs"] = static_cast<double>(w.sets.pairs.size());
 }
 
-WithPercentiles(benchmark::RegisterBenchmark("stage/rectify_one_image", Rectify));
-WithPercentiles(benchmark::RegisterBenchmark("stage/segments_one_image", Segments2D));
-WithPercentiles(benchmark::RegisterBenchmark("stage/edge_map_one_image", EdgeMaps));
-WithPercentiles(benchmark::RegisterBenchmark("stage/normalize_one_image", Normalization));
-WithPercentiles(benchmark::RegisterBenchmark("stage/stereo_lines", StereoLines));
-WithPercentiles(benchmark::RegisterBenchmark("stage/line_sets", LineSets));
+BENCHMARK(Rectify)->Name("stage/rectify_one_image")->Apply(WithPercentiles);
+BENCHMARK(Segments2D)->Name("stage/segments_one_image")->Apply(WithPercentiles);
+BENCHMARK(EdgeMaps)->Name("stage/edge_map_one_image")->Apply(WithPercentiles);
+BENCHMARK(Normalization)->Name("stage/normalize_one_image")->Apply(WithPercentiles);
+BENCHMARK(StereoLines)->Name("stage/stereo_lines")->Apply(WithPercentiles);
+BENCHMARK(LineSets)->Name("stage/line_sets")->Apply(WithPercentiles);
 
 }  // namespace
 }  // namespace wirepose::bench
