@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/simd.h"
+
 namespace wirepose {
 namespace {
 
@@ -39,7 +41,7 @@ int MedianMagnitude(const EdgeImage& image) {
   return static_cast<int>(histogram.size());
 }
 
-void ComputeGradient(const SmoothPlane& smooth, EdgeImage& out) {
+WIREPOSE_VECTOR_KERNEL void ComputeGradient(const SmoothPlane& smooth, EdgeImage& out) {
   for (int y = 0; y < out.height; ++y) {
     const std::int16_t* row = smooth.data() + y * kStride;
     const std::int16_t* above = y > 0 ? row - kStride : row;
@@ -100,7 +102,7 @@ void SortRidges(EdgeImage& image) {
 
 }  // namespace
 
-void SmoothImage(ImageView image, SmoothPlane& smooth) {
+WIREPOSE_VECTOR_KERNEL void SmoothImage(ImageView image, SmoothPlane& smooth) {
   // A ring of five filtered rows: each output row needs two above and two below, borders repeated.
   std::array<std::array<std::int16_t, kMaxImageWidth>, 5> ring;
   const auto filtered = [&](int y) -> const std::int16_t* {

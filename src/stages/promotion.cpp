@@ -21,9 +21,9 @@ class Promoter {
     set = {};
     set.R = hypothesis.R;
     set.t = hypothesis.t;
-    for (int round = 0; round < 3; ++round) {
-      Gather(set, round == 0 ? params_.max_offset_px : 0.5F * params_.max_offset_px);
-      if (round < 2 && !Align(set)) return false;
+    for (const float share : {1.0F, 0.5F}) {
+      Gather(set, share * params_.max_offset_px);
+      if (!Align(set)) return false;
     }
     const EdgeBits visible = Visible(set);
     if (!scorer_.Score(set.R, set.t, visible, set.score)) return false;

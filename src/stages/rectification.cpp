@@ -119,6 +119,33 @@ bool IsUsable(const CameraIntrinsics& c) {
   return finite && c.fx > 1 && c.fy > 1 && c.fx < 1e5 && c.fy < 1e5;
 }
 
+// Bilinear values of columns [begin, end).
+void ResampleRow(ImageView raw, const RowCursor& cursor, int begin, int end, std::uint8_t* row) {
+  constexpr int kStep = RectificationMap::kNodeStep;
+  const int last_x = raw.width - 2, last_y = raw.height - 2;
+  for (int x0 = begin / kStep * kStep; x0 < end; x0 += kStep) {
+    const RectificationMap::Node from = cursor.At(x0 / kStep);
+    const RectificationMap::Node to = cursor.At(x0 / kStep + 1);
+    const std::int32_t dx = (to.x - from.x) / kStep, dy = (to.y - from.y) / kStep;
+    const int first = std::max(begin, x0), last = std::min(end, x0 + kStep);
+    std::int32_t u = from.x + (first - x0) * dx, v = from.y + (first - x0) * dy;
+    // Only the image's last column and row need clamping, and few runs touch them.
+    const std::int32_t u_end = u + (last - first) * dx, v_end = v + (last - first) * dy;
+    const bool interior = std::max(u, u_end) >> 16 < last_x && std::max(v, v_end) >> 16 < last_y;
+    for (int x = first; x < last; ++x, u += dx, v += dy) {
+      const int xi = interior ? u >> 16 : std::min(u >> 16, last_x);
+      const int yi = interior ? v >> 16 : std::min(v >> 16, last_y);
+      const int fx = (u - (xi << 16)) >> 8;  // 0..256
+      const int fy = (v - (yi << 16)) >> 8;
+      const std::uint8_t* p = raw.data + yi * raw.stride + xi;
+      const std::uint8_t* q = p + raw.stride;
+      const int top = p[0] * (256 - fx) + p[1] * fx;
+      const int bottom = q[0] * (256 - fx) + q[1] * fx;
+      row[x] = static_cast<std::uint8_t>((top * (256 - fy) + bottom * fy + 32768) >> 16);
+    }
+  }
+}
+
 }  // namespace
 
 Eigen::Vector2d DistortAndProject(const CameraIntrinsics& c, double x, double y) {
@@ -174,18 +201,7 @@ void RectifyImage(ImageView raw, const RectificationMap& map, MutableImageView o
       std::fill(row, row + out.width, std::uint8_t{0});
       continue;
     }
-    ForEachPixel(map, y, out.width, [&](int x, std::int32_t u, std::int32_t v) {
-      if (x < begin || x >= end) return;
-      const int xi = std::min(u >> 16, raw.width - 2);
-      const int yi = std::min(v >> 16, raw.height - 2);
-      const int fx = (u - (xi << 16)) >> 8;  // 0..256
-      const int fy = (v - (yi << 16)) >> 8;
-      const std::uint8_t* p = raw.row(yi) + xi;
-      const std::uint8_t* q = p + raw.stride;
-      const int top = p[0] * (256 - fx) + p[1] * fx;
-      const int bottom = q[0] * (256 - fx) + q[1] * fx;
-      row[x] = static_cast<std::uint8_t>((top * (256 - fy) + bottom * fy + 32768) >> 16);
-    });
+    ResampleRow(raw, RowCursor{map, y}, begin, end, row);
     std::fill(row, row + begin, row[begin]);
     std::fill(row + end, row + out.width, row[end - 1]);
   }

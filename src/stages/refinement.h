@@ -8,10 +8,10 @@
 namespace wirepose {
 
 struct RefineParams {
-  int iterations = 9;
-  SampleParams samples;
-  float first_range_px = 12;   // 1D search along the edge normal; shrinks to last_range_px
-  float last_range_px = 4;
+  int iterations = 7;
+  SampleParams samples{.step_px = 8};
+  float first_range_px = 8;    // 1D search along the edge normal; shrinks to last_range_px
+  float last_range_px = 3;
   float min_gradient = 1.0F;   // grey levels per pixel: weaker edges are not followed
   float min_qualified_share = 0.4F;  // an edge with less support than this does not pull in the last iterations
   float sigma_floor_px = 0.3F;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/simd.h"
+
 namespace wirepose {
 namespace {
 
@@ -45,7 +47,7 @@ struct Match {
 
 // Adds |left - right| of one pixel row of a strip to the costs of all disparities it can have. `cost` counts down from
 // disparity `reachable - 1`, so that memory runs up.
-void AddRow(const std::uint8_t* left, const std::uint8_t* right, int count, int reachable, std::uint16_t* cost) {
+WIREPOSE_VECTOR_KERNEL void AddRow(const std::uint8_t* left, const std::uint8_t* right, int count, int reachable, std::uint16_t* cost) {
   for (int j = 0; j < count; ++j) {
     const int l = left[j];
     for (int k = 0; k < reachable; ++k) {
@@ -119,6 +121,11 @@ RowSamples FlatSamples(const Segment2& s) {
   return samples;
 }
 
+// sum[d] += cost[d].
+WIREPOSE_VECTOR_KERNEL void AddCosts(const std::uint16_t* cost, int count, std::uint16_t* sum) {
+  for (int d = 0; d < count; ++d) sum[d] = static_cast<std::uint16_t>(sum[d] + cost[d]);
+}
+
 // Smallest cost over all (middle disparity, slope). Slopes advance such that the ends move by one pixel.
 Match SearchDisparity(const StereoLineParams& params, const Segment2& segment, const RowSamples& rows,
                       StereoScratch& scratch) {
@@ -137,10 +144,7 @@ Match SearchDisparity(const StereoLineParams& params, const Segment2& segment, c
       high = std::max(high, shift);
       const int d0 = std::max(0, -shift);
       const int d1 = std::min(kMaxDisparity, kMaxDisparity - shift);
-      const std::uint16_t* cost = scratch.cost[r].data() + shift;
-      for (int d = d0; d < d1; ++d) {
-        scratch.sum[static_cast<std::size_t>(d)] = static_cast<std::uint16_t>(scratch.sum[static_cast<std::size_t>(d)] + cost[d]);
-      }
+      AddCosts(scratch.cost[r].data() + shift + d0, d1 - d0, scratch.sum.data() + d0);
     }
     for (int d = 1 - low; d < kMaxDisparity - high; ++d) {
       const std::uint16_t c = scratch.sum[static_cast<std::size_t>(d)];

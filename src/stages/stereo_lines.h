@@ -31,7 +31,7 @@ struct StereoLineParams {
 };
 
 inline constexpr int kMaxDisparity = 192;  // px: 0.33 m at f*B = 63 px*m
-inline constexpr int kMaxStereoRows = 24;  // rows compared along one segment
+inline constexpr int kMaxStereoRows = 16;  // rows compared along one segment
 
 // Work space; contents have no meaning between calls.
 struct StereoScratch {

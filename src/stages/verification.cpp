@@ -50,9 +50,9 @@ float PatchCost(const VerifyInput& in, const PlaneDisparity& plane, int u, int v
 // Costs of one surface at several shifts of disparity, summed over patches. Shifts are counted in units of what scale may
 // be wrong by: a pixel, or 3 % of the disparity, by which real stereo rigs and object measures were seen to disagree.
 struct ShiftProfile {
-  static constexpr std::array<float, 13> kShifts = {-6, -4, -3, -2, -1, -0.5F, 0, 0.5F, 1, 2, 3, 4, 6};
-  static constexpr std::size_t kNear = 4;   // first of the shifts that count as the plane itself
-  static constexpr std::size_t kFar = 9;    // one past the last of them
+  static constexpr std::array<float, 9> kShifts = {-4.5F, -2.5F, -1, -0.5F, 0, 0.5F, 1, 2.5F, 4.5F};
+  static constexpr std::size_t kNear = 2;   // first of the shifts that count as the plane itself
+  static constexpr std::size_t kFar = 7;    // one past the last of them
   std::array<float, kShifts.size()> cost{};
   int patches = 0;
 

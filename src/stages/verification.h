@@ -15,7 +15,7 @@ struct VerifyParams {
   float max_offset_px = 1.6F;   // of a supporting image edge from the model edge, in each image ...
   float max_difference_px = 1.2F;  // ... and between both images
   int face_grid_px = 6;         // spacing of patches on a face
-  int max_face_patches = 80;    // per face; the grid widens to fit
+  int max_face_patches = 32;    // per face; the grid widens to fit
   float min_face_px2 = 250;     // smaller faces abstain
 };
 
