@@ -15,9 +15,12 @@ std::atomic<long> g_allocations{0};
 }
 
 #ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/allocator_interface.h>
+// Of the sanitizers' public interface; GCC's packages lack the header.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*,
+                                                                  std::size_t),
+                                                         void (*)(const volatile void*));
 namespace {
-const int kHooks = __sanitizer_install_malloc_and_free_hooks(
+[[maybe_unused]] const int kHooks = __sanitizer_install_malloc_and_free_hooks(
     [](const volatile void*, std::size_t) { ++g_allocations; }, [](const volatile void*) {});
 }
 #else

@@ -106,7 +106,7 @@ void Expect(const Statistics& s, double max_offset_rms, double max_angle_rms) {
   EXPECT_LT(std::sqrt(s.angle_normalized / n), 2.5);
   EXPECT_GT(std::sqrt(s.offset_normalized / n), 0.2);
   // Corners are rounded by the lens and the filter.
-  EXPECT_GT(s.ends_within_two_px, 0.85 * 2 * n);
+  EXPECT_GT(s.ends_within_two_px, 0.75 * 2 * n);
   ::testing::Test::RecordProperty("offset_rms_px", std::to_string(std::sqrt(s.offset_square / n)));
   ::testing::Test::RecordProperty("angle_rms_rad", std::to_string(std::sqrt(s.angle_square / n)));
   ::testing::Test::RecordProperty("worst_end_px", std::to_string(s.worst_end));
@@ -191,9 +191,9 @@ TEST(SegmentFinding, OverflowIsCounted) {
 // A gap that is short against the edge is bridged; where contrast is inverted the line ends.
 TEST(SegmentFinding, JoinsAcrossGapsButNotAcrossPolarity) {
   const auto count_long = [](const std::function<double(int, int)>& level) {
+    const auto planes = FindAll(Paint(300, 100, level));
     int count = 0;
-    for (const Segment2& s : FindAll(Paint(300, 100, level))->segments.items)
-      count += s.Length() > 200 ? 1 : 0;
+    for (const Segment2& s : planes->segments.items) count += s.Length() > 200 ? 1 : 0;
     return count;
   };
   const auto edge = [](int y) { return Step(y - 50.3); };
