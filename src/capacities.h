@@ -17,20 +17,20 @@ inline constexpr std::size_t kMaxPixels = std::size_t{kMaxImageWidth} * kMaxImag
 // --- Features ------------------------------------------------------------------------------------------------------
 // Real kitchens show 150-300 segments of 12 px and more; the longest are kept.
 inline constexpr std::size_t kMaxSegments = 512;
-// Pixels on edge ridges: a sixth of a 640x480 image; photographs of clutter have 15,000 to 30,000.
+// Pixels on edge ridges: a sixth of a 640x480 image; photographs of clutter have 15,000 to 30,000. The lowest rows go first.
 inline constexpr std::size_t kMaxRidgePixels = 51200;
 // One connected edge; longer than any straight line in the image.
 inline constexpr std::size_t kMaxChain = 2048;
 
 // Related pairs of image lines: 150 lines with depth make 11,000 pairs; only clutter of small tiles has more.
-inline constexpr std::size_t kMaxImageLinePairs = 8192;
+inline constexpr std::size_t kMaxImageLinePairs = 6144;
 // Corresponding line sets kept per model, by rank: the paper's "small number".
-inline constexpr std::size_t kMaxCorrespondences = 2048;
+inline constexpr std::size_t kMaxCorrespondences = 1536;
 inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose
 // Pose hypotheses kept per model after the coarse score. Many of them are one pose.
-inline constexpr std::size_t kMaxHypotheses = 160;
-inline constexpr std::size_t kMaxCandidates = 12;  // corresponding line sets per model after duplicates are merged
-inline constexpr std::size_t kMaxRefined = 6;      // candidates of one model that are refined and verified
+inline constexpr std::size_t kMaxHypotheses = 128;
+inline constexpr std::size_t kMaxCandidates = 8;  // corresponding line sets per model after duplicates are merged
+inline constexpr std::size_t kMaxRefined = 4;      // candidates of one model that are refined and verified
 inline constexpr std::size_t kMaxVerified = 64;    // of all models, that compete for the image's edges
 inline constexpr std::size_t kMaxEdgeSamples = 512;  // points on visible edges of one pose; the step widens to fit
 

@@ -143,11 +143,11 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
 
   FixedVector<Candidate, kMaxRefined> refined;
   const SceneImages images{camera(), left_smooth_, right_smooth_};
-  for (const CorrespondingSet& set : sets_) {
-    if (refined.full()) break;
+  for (std::size_t i = 0; i < std::min(sets_.size(), kMaxRefined); ++i) {
+    const CorrespondingSet& set = sets_[i];
     Candidate candidate;
     candidate.model = static_cast<std::uint16_t>(m);
-    candidate.order = static_cast<std::uint16_t>(refined.size());
+    candidate.order = static_cast<std::uint16_t>(i);
     candidate.members = set.members;
     const Pose start{Orthonormalize(set.R.cast<double>()), set.t.cast<double>()};
     RefinePose(params_.refine, images, model, start, refine_scratch_, candidate.pose);

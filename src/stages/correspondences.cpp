@@ -30,7 +30,8 @@ class Matcher {
       if (set.base_edge != assigned_edge_) Promote();
       assigned_edge_ = set.base_edge;
       for (const ImageLinePair& pair : sets_.OfBase(base)) {
-        if (CanRank(pair)) MatchPair(set, pair);
+        if (!CanRank(pair)) break;  // nor can the rest: pairs come by falling quality
+        MatchPair(set, pair);
       }
     }
     Promote();

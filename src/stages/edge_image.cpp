@@ -69,35 +69,34 @@ Ridge ClassifyPixel(const EdgeImage& image, std::size_t i) {
   return across_x ? Ridge::kAcrossX : Ridge::kAcrossY;
 }
 
-// Counting sort of all ridge pixels by falling magnitude; the weakest are dropped when there are too many.
+// Counting sort of the collected ridge pixels by falling magnitude, stable in the order of rows.
 void SortRidges(EdgeImage& image) {
   std::array<std::uint32_t, kLastBucket + 1> start{};
-  const auto bucket = [](std::uint16_t m) { return kLastBucket - std::min<std::size_t>(m / 16, kLastBucket); };
-  const auto for_each = [&](const auto& use) {
-    for (int y = 0; y < image.height; ++y) {
-      const std::size_t row = EdgeImage::Index(0, y);
-      for (std::size_t i = row; i < row + static_cast<std::size_t>(image.width); ++i) {
-        if (image.ridge[i] != 0) use(i);
-      }
-    }
-  };
-  for_each([&](std::size_t i) { ++start[bucket(image.magnitude[i])]; });
+  const auto bucket = [&](std::uint32_t i) { return kLastBucket - std::min<std::size_t>(image.magnitude[i] / 16, kLastBucket); };
+  for (std::uint32_t k = 0; k < image.ridge_count; ++k) ++start[bucket(image.found[k])];
   std::uint32_t sum = 0;
   for (std::uint32_t& s : start) {
     const std::uint32_t count = s;
     s = sum;
     sum += count;
   }
-  for_each([&](std::size_t i) {
-    const std::uint32_t place = start[bucket(image.magnitude[i])]++;
-    if (place < kMaxRidgePixels) {
-      image.ridge_pixels[place] = static_cast<std::uint32_t>(i);
-    } else {
-      image.ridge[i] = 0;
+  for (std::uint32_t k = 0; k < image.ridge_count; ++k) image.ridge_pixels[start[bucket(image.found[k])]++] = image.found[k];
+}
+
+// Marks and collects the ridge pixels of row y, columns [begin, end).
+void CollectRow(int y, int begin, int end, EdgeImage& out) {
+  for (int x = begin; x < end; ++x) {
+    const std::size_t i = EdgeImage::Index(x, y);
+    if (out.magnitude[i] < out.threshold) continue;
+    const Ridge ridge = ClassifyPixel(out, i);
+    if (ridge == Ridge::kNone) continue;
+    if (out.ridge_count == kMaxRidgePixels) {
+      ++out.ridge_dropped;
+      continue;
     }
-  });
-  image.ridge_count = std::min<std::uint32_t>(sum, kMaxRidgePixels);
-  image.ridge_dropped = sum - image.ridge_count;
+    out.ridge[i] = static_cast<std::uint8_t>(ridge);
+    out.found[out.ridge_count++] = static_cast<std::uint32_t>(i);
+  }
 }
 
 }  // namespace
@@ -134,15 +133,13 @@ void FindRidges(const SmoothPlane& smooth, int width, int height, const Rectific
   const float threshold = std::max(params.noise_factor * noise, params.min_gradient * kGradientOne);
   // Texture everywhere must not silence the edges: the noise estimate is trusted up to 4 grey levels per pixel.
   out.threshold = static_cast<std::uint16_t>(std::min(threshold, 4.0F * kGradientOne));
+  out.ridge_count = out.ridge_dropped = 0;
   for (int y = 0; y < height; ++y) {
     std::uint8_t* ridge = out.ridge.data() + EdgeImage::Index(0, y);
     std::fill(ridge, ridge + width, std::uint8_t{0});
     if (y < kBorder || y >= height - kBorder) continue;
     const auto [begin, end] = map.valid[static_cast<std::size_t>(y)];
-    for (int x = begin + kBorder; x < end - kBorder; ++x) {
-      const std::size_t i = EdgeImage::Index(x, y);
-      if (out.magnitude[i] >= out.threshold) ridge[x] = static_cast<std::uint8_t>(ClassifyPixel(out, i));
-    }
+    CollectRow(y, begin + kBorder, end - kBorder, out);
   }
   SortRidges(out);
 }

@@ -7,26 +7,12 @@
 namespace wirepose {
 namespace {
 
-// Tangents of 11.25, 22.5 and 33.75 degrees: sector borders within 45 degrees.
-constexpr float kTan[3] = {0.19891237F, 0.41421356F, 0.66817864F};
-
 std::uint16_t DirectionAndNeighbours(int direction) {
   const auto rotate = [](int d) { return static_cast<std::uint16_t>(1U << ((d + EdgeMap::kDirections) % EdgeMap::kDirections)); };
   return static_cast<std::uint16_t>(rotate(direction - 1) | rotate(direction) | rotate(direction + 1));
 }
 
 }  // namespace
-
-int EdgeMap::Direction(float dx, float dy) {
-  const float ax = std::abs(dx), ay = std::abs(dy);
-  const bool steep = ay > ax;
-  const float low = steep ? ax : ay;
-  const float high = steep ? ay : ax;
-  int sector = 0;  // 0..3 within 45 degrees of the nearer axis
-  while (sector < 3 && low > kTan[sector] * high) ++sector;
-  const int first_quadrant = steep ? 7 - sector : sector;  // 0..7 counts 11.25 degrees from the x axis
-  return (dx >= 0) == (dy >= 0) ? first_quadrant : kDirections - 1 - first_quadrant;
-}
 
 void BuildEdgeMap(const EdgeImage& edges, EdgeMap& out) {
   out.width = edges.width;

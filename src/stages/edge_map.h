@@ -22,7 +22,16 @@ struct EdgeMap {
 
   // Direction index 0..15 of an edge along (dx, dy), without trigonometry: the half turn is cut into eight sectors of
   // equal tangent differences, close enough to equal angles for a tolerance of one and a half sectors.
-  static int Direction(float dx, float dy);
+  static int Direction(float dx, float dy) {
+    // Tangents of 11.25, 22.5 and 33.75 degrees: sector borders within 45 degrees.
+    const float ax = std::abs(dx), ay = std::abs(dy);
+    const bool steep = ay > ax;
+    const float low = steep ? ax : ay;
+    const float high = steep ? ay : ax;
+    const int sector = (low > 0.19891237F * high ? 1 : 0) + (low > 0.41421356F * high ? 1 : 0) + (low > 0.66817864F * high ? 1 : 0);
+    const int first_quadrant = steep ? 7 - sector : sector;  // 0..7 counts 11.25 degrees from the x axis
+    return (dx >= 0) == (dy >= 0) ? first_quadrant : kDirections - 1 - first_quadrant;
+  }
 
   [[nodiscard]] bool Contains(float x, float y) const {
     return x >= 4 && y >= 4 && x < static_cast<float>(width - 4) && y < static_cast<float>(height - 4);

@@ -52,7 +52,16 @@ class PairMaker {
       if (!lines[i].has_depth) continue;
       direction_sigma_[i] = DirectionSigma(camera, lines[i]);
       depth_sigma_[i] = DepthSigma(camera, lines[i]);
+      log_angle_[i] = LogAngle(direction_sigma_[i]);
+      log_distance_[i] = LogDistance(depth_sigma_[i]);
     }
+  }
+
+  // No pair of these two lines has a higher quality: the joint sigmas are at least the larger ones.
+  [[nodiscard]] float QualityBound(std::size_t b, std::size_t o) const {
+    float bound = log_length_[b] + log_length_[o] + params_.junction_quality;
+    if (lines_[o].has_depth) bound -= std::max(log_angle_[b], log_angle_[o]) + std::max(log_distance_[b], log_distance_[o]);
+    return bound;
   }
 
   // False when the two lines are not related.
@@ -88,9 +97,12 @@ class PairMaker {
     pair.distance_m = DistanceOfLines(base, other, sine);
     pair.distance_sigma_m = std::sqrt(depth_sigma_[b] * depth_sigma_[b] + depth_sigma_[o] * depth_sigma_[o]);
     // Normalisation of the two Gaussians that V is compared with, relative to a rad of 1 and a distance of 1 cm.
-    pair.quality -= std::log(pair.angle_sigma_rad + 0.02F) + std::log((pair.distance_sigma_m + 0.003F) / 0.01F);
+    pair.quality -= LogAngle(pair.angle_sigma_rad) + LogDistance(pair.distance_sigma_m);
     return true;
   }
+
+  static float LogAngle(float sigma_rad) { return std::log(sigma_rad + 0.02F); }
+  static float LogDistance(float sigma_m) { return std::log((sigma_m + 0.003F) / 0.01F); }
 
   static float Angle(float sine, float cosine) {
     const bool steep = sine > cosine;
@@ -101,7 +113,7 @@ class PairMaker {
 
   const LineSetParams& params_;
   const Lines3& lines_;
-  std::array<float, kMaxSegments> direction_sigma_{}, depth_sigma_{}, log_length_{};
+  std::array<float, kMaxSegments> direction_sigma_{}, depth_sigma_{}, log_length_{}, log_angle_{}, log_distance_{};
 };
 
 // Counting sort of the kept pairs by base line. Within a base they stay in the order of quality.
@@ -140,6 +152,8 @@ void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, co
     if (!lines[b].has_depth || lines[b].segment.Length() < params.min_depth_length_px) continue;
     for (std::size_t o = 0; o < lines.size(); ++o) {
       ImageLinePair pair;
+      pair.quality = maker.QualityBound(b, o) + 1e-3F;
+      if (!out.kept.WouldKeep(pair)) continue;
       // Of two lines with depth the longer one, which comes first, is the base: model sets hold both orders.
       if (o == b || (o < b && lines[o].has_depth) || !maker.Make(b, o, pair)) continue;
       out.kept.Push(pair);

@@ -47,7 +47,7 @@ struct BetterImagePair {
   }
 };
 
-// All pairs, grouped by base line: the set of base line b is pairs [first[b], first[b + 1]).
+// All pairs, grouped by base line: the set of base line b is pairs [first[b], first[b + 1]), by falling quality.
 struct ImageLineSets {
   KeepBest<ImageLinePair, kMaxImageLinePairs, BetterImagePair> kept;  // work space: unordered
   FixedVector<ImageLinePair, kMaxImageLinePairs> pairs;

@@ -157,7 +157,7 @@ class Refiner {
     out.covariance = (0.5 * (out.covariance + out.covariance.transpose())).eval();
     out.rms_px = static_cast<float>(std::sqrt(sum / weight));
     out.inliers = static_cast<std::uint16_t>(inliers);
-    out.ok = out.covariance.allFinite();
+    out.ok = out.rms_px < params_.max_rms_px && out.covariance.allFinite();
   }
 
   const RefineParams& params_;

@@ -14,6 +14,7 @@ struct RefineParams {
   float last_range_px = 3;
   float min_gradient = 1.0F;   // grey levels per pixel: weaker edges are not followed
   float min_qualified_share = 0.4F;  // an edge with less support than this does not pull in the last iterations
+  float max_rms_px = 1.25F;  // what fits worse after all iterations is no fit
   float sigma_floor_px = 0.3F;
   float covariance_inflation = 2.0F;  // of the standard deviations: samples share their errors
 };
@@ -35,7 +36,7 @@ struct RefinedPose {
   Matrix6d covariance = Matrix6d::Identity();  // of PerturbLeft about the model origin: rotation, translation
   float rms_px = 0;
   std::uint16_t inliers = 0;  // samples of both images within three sigma
-  bool ok = false;            // enough edges were found and the normal matrix had full rank
+  bool ok = false;            // enough edges were found, they fit, and the normal matrix had full rank
 };
 
 // Robust Gauss-Newton on SE(3). The closest image feature of eq. 11 is searched along the normal of the projected edge

@@ -87,6 +87,22 @@ bool IsHidden(const ModelView& model, const FrontTriangles& front, const Vector3
   return false;
 }
 
+namespace {
+
+// Front triangles other than those of faces `f` and `g` whose bounding box meets that of the image edge a-b.
+void FindNear(const ModelView& model, const FrontTriangles& front, const Vector2& a, const Vector2& b, std::uint16_t f,
+              std::uint16_t g, FrontTriangles& out) {
+  const Vector2 low = a.cwiseMin(b), high = a.cwiseMax(b);
+  out.clear();
+  for (const FrontTriangle& t : front) {
+    if (t.low.x() > high.x() || t.low.y() > high.y() || t.high.x() < low.x() || t.high.y() < low.y()) continue;
+    const std::uint16_t face = model.triangles[t.triangle].face;
+    if (face != f && face != g) out.push_back(t);
+  }
+}
+
+}  // namespace
+
 void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                         const Pose& T_camera_model, FrontTriangles& scratch, EdgeSamples& out) {
   out.clear();
@@ -110,6 +126,7 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
   for_each_edge([&](std::size_t, const Vector3&, const Vector3&, const Seen&, const Seen&, float length) { total += length + params.step_px; });
   const float step = std::max(params.step_px, total / static_cast<float>(kMaxEdgeSamples));
 
+  FrontTriangles near_edge;  // that may hide a part of the edge at hand
   for_each_edge([&](std::size_t e, const Vector3& a, const Vector3& b, const Seen& pa, const Seen& pb, float length) {
     const int n = std::max(1, static_cast<int>(length / step));
     EdgeSample sample;
@@ -117,6 +134,8 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
     sample.tangent = Unit(pb.left - pa.left);
     sample.tangent_right = Unit(pb.left - pa.left - Vector2(pb.disparity - pa.disparity, 0));
     sample.weight_px = length / static_cast<float>(n);
+    const ModelEdge& edge = model.view.edges[e];
+    if (!model.convex) FindNear(model.view, scratch, pa.left, pb.left, edge.face[0], edge.face[1], near_edge);
     for (int k = 0; k < n && !out.full(); ++k) {
       // Even steps in the image are uneven steps in space: interpolate with the depths.
       const float s = (static_cast<float>(k) + 0.5F) / static_cast<float>(n);
@@ -124,8 +143,7 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
       sample.point = model.edges[e].a + w * (model.edges[e].b - model.edges[e].a);
       sample.left = pa.left + s * (pb.left - pa.left);
       sample.disparity = pa.disparity + s * (pb.disparity - pa.disparity);
-      const ModelEdge& edge = model.view.edges[e];
-      if (!model.convex && IsHidden(model.view, scratch, eye, sample.point, sample.left, edge.face[0], edge.face[1])) continue;
+      if (!near_edge.empty() && IsHidden(model.view, near_edge, eye, sample.point, sample.left, edge.face[0], edge.face[1])) continue;
       out.push_back(sample);
     }
   });

@@ -232,48 +232,70 @@ void SplitChain(const SegmentParams& params, const Point* points, std::size_t co
   }
 }
 
-// True when q continues p: same polarity, same line, small gap; then p becomes both.
-bool Join(const SegmentParams& params, Segment2& p, const Segment2& q) {
-  const Vector2 d = p.Direction();
-  const float lp = p.Length();
-  const float lq = q.Length();
-  const Vector2 e = q.Delta() / lq;
-  if (std::abs(d.x() * e.y() - d.y() * e.x()) > params.join_angle_rad + p.sigma_angle_rad + q.sigma_angle_rad) return false;
-  if (d.dot(e) < 0) return false;
-  const float s0 = (q.a - p.a).dot(d);
-  const float s1 = (q.b - p.a).dot(d);
-  const float gap = std::max(s0 - lp, -s1);  // negative: they overlap
-  if (gap > params.max_gap_share * std::min(lp, lq) || gap < -0.3F * std::min(lp, lq)) return false;
-  const Vector2 n(-d.y(), d.x());
-  if (std::abs((q.a - p.a).dot(n)) > params.join_offset_px || std::abs((q.b - p.a).dot(n)) > params.join_offset_px) {
-    return false;
-  }
-  if (std::min(p.contrast, q.contrast) < 0.3F * std::max(p.contrast, q.contrast)) return false;
-  // The joint line: both middles and both directions, weighted by the information that each piece has.
-  const float wp = lp / (lp + lq), wq = lq / (lp + lq);
-  const Vector2 centre = wp * p.Middle() + wq * q.Middle();
-  const float spread = 12 * wp * wq;  // lever arm of the two middles against the pieces' own directions
-  Vector2 between = q.Middle() - p.Middle();
-  if (between.dot(d) < 0) between = -between;
-  const Vector2 direction =
-      (wp * wp * wp * d + wq * wq * wq * e + spread * 0.25F * between.normalized()).normalized();
-  const float t0 = std::min((p.a - centre).dot(direction), (q.a - centre).dot(direction));
-  const float t1 = std::max((p.b - centre).dot(direction), (q.b - centre).dot(direction));
-  p.a = centre + t0 * direction;
-  p.b = centre + t1 * direction;
-  p.contrast = wp * p.contrast + wq * q.contrast;
-  p.sigma_offset_px = std::min(p.sigma_offset_px, q.sigma_offset_px);
-  p.sigma_angle_rad = std::min(p.sigma_angle_rad, q.sigma_angle_rad);
-  return true;
+// What the test for joining needs of every segment, kept beside the list.
+struct Shape {
+  Vector2 direction;
+  float length;
+};
+
+Shape ShapeOf(const Segment2& s) {
+  const float length = s.Length();
+  return {s.Delta() / length, length};
 }
 
+// True when q continues p: same polarity, same line, small gap.
+bool Continues(const SegmentParams& params, const Segment2& p, const Shape& ps, const Segment2& q, const Shape& qs) {
+  const Vector2& d = ps.direction;
+  if (d.dot(qs.direction) < 0.9F) return false;
+  const Vector2 a = q.a - p.a, b = q.b - p.a;
+  if (std::abs(a.y() * d.x() - a.x() * d.y()) > params.join_offset_px) return false;
+  if (std::abs(b.y() * d.x() - b.x() * d.y()) > params.join_offset_px) return false;
+  const float sine = std::abs(d.x() * qs.direction.y() - d.y() * qs.direction.x());
+  if (sine > params.join_angle_rad + p.sigma_angle_rad + q.sigma_angle_rad) return false;
+  const float shorter = std::min(ps.length, qs.length);
+  const float gap = std::max(a.dot(d) - ps.length, -b.dot(d));  // negative: they overlap
+  if (gap > params.max_gap_share * shorter || gap < -0.3F * shorter) return false;
+  return std::min(p.contrast, q.contrast) >= 0.3F * std::max(p.contrast, q.contrast);
+}
+
+// Both as one: middles and directions, weighted by the information that each piece has.
+Segment2 Joined(const Segment2& p, const Shape& ps, const Segment2& q, const Shape& qs) {
+  const float wp = ps.length / (ps.length + qs.length), wq = 1 - wp;
+  const Vector2 centre = wp * p.Middle() + wq * q.Middle();
+  const float spread = 3 * wp * wq;  // lever arm of the two middles against the pieces' own directions
+  Vector2 between = q.Middle() - p.Middle();
+  if (between.dot(ps.direction) < 0) between = -between;
+  const Vector2 direction =
+      (wp * wp * wp * ps.direction + wq * wq * wq * qs.direction + spread * between.normalized()).normalized();
+  const float t0 = std::min((p.a - centre).dot(direction), (q.a - centre).dot(direction));
+  const float t1 = std::max((p.b - centre).dot(direction), (q.b - centre).dot(direction));
+  Segment2 joined = p;
+  joined.a = centre + t0 * direction;
+  joined.b = centre + t1 * direction;
+  joined.contrast = wp * p.contrast + wq * q.contrast;
+  joined.sigma_offset_px = std::min(p.sigma_offset_px, q.sigma_offset_px);
+  joined.sigma_angle_rad = std::min(p.sigma_angle_rad, q.sigma_angle_rad);
+  return joined;
+}
+
+// Longest first; a segment that grew is tried against the rest once more.
 void JoinCollinear(const SegmentParams& params, FixedVector<Segment2, kMaxSegments>& items) {
-  // Longest first; a segment that grew is tried against the rest again, at most once each.
+  std::array<Shape, kMaxSegments> shapes;
+  for (std::size_t i = 0; i < items.size(); ++i) shapes[i] = ShapeOf(items[i]);
   for (std::size_t i = 0; i < items.size(); ++i) {
     for (int pass = 0; pass < 2; ++pass) {
       std::size_t kept = i + 1;
       for (std::size_t j = i + 1; j < items.size(); ++j) {
-        if (!Join(params, items[i], items[j])) items[kept++] = items[j];
+        if (Continues(params, items[i], shapes[i], items[j], shapes[j])) {
+          items[i] = Joined(items[i], shapes[i], items[j], shapes[j]);
+          shapes[i] = ShapeOf(items[i]);
+        } else {
+          if (kept != j) {
+            items[kept] = items[j];
+            shapes[kept] = shapes[j];
+          }
+          ++kept;
+        }
       }
       if (kept == items.size()) break;
       items.resize(kept);

@@ -13,13 +13,13 @@ namespace wirepose {
 // tools/evaluation/fit_score.py, never to recorded test data; log_length is given, not fitted: evidence of equal density
 // counts more the longer it is (as in a-contrario detection), which scenes with few sizes of objects cannot teach.
 struct ScoreParams {
-  float bias = -10.138F;
-  float edge_density = 0.539F;  // per log-likelihood unit and 100 px of visible edge
+  float bias = -11.535F;
+  float edge_density = 0.587F;  // per log-likelihood unit and 100 px of visible edge
   float log_length = 1.0F;     // per natural logarithm of visible edge length over 300 px
-  float faces = 0.114F;         // per unit of face evidence
-  float contrast = 1.606F;      // per unit of contrast with the surroundings
-  float overrun = -3.146F;      // per unit of overrun share
-  float inside = 3.813F;        // per share of the visible edges that lies in the image
+  float faces = 0.128F;         // per unit of face evidence
+  float contrast = 2.081F;      // per unit of contrast with the surroundings
+  float overrun = -3.480F;      // per unit of overrun share
+  float inside = 3.304F;        // per share of the visible edges that lies in the image
 };
 
 struct SelectParams {

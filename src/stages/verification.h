@@ -12,8 +12,8 @@ struct VerifyParams {
   SampleParams samples{.step_px = 6};
   float support_rate = 0.7F;    // share of a true object's visible edge samples that show an edge
   float sample_weight = 0.5F;   // neighbouring samples are not independent
-  float max_offset_px = 1.6F;   // of a supporting image edge from the model edge, in each image ...
-  float max_difference_px = 1.2F;  // ... and between both images
+  float max_offset_px = 2.2F;   // of a supporting image edge from the model edge, in each image ...
+  float max_difference_px = 4.0F;  // ... and between both images
   int face_grid_px = 6;         // spacing of patches on a face
   int max_face_patches = 32;    // per face; the grid widens to fit
   float min_face_px2 = 250;     // smaller faces abstain
