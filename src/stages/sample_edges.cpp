@@ -109,13 +109,12 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
   const Matrix3 R = T_camera_model.R.cast<float>();
   const Vector3 t = T_camera_model.t.cast<float>();
   const Vector3 eye = -(R.transpose() * t);
-  const EdgeBits visible = model.VisibleEdges(eye);
   if (!model.convex) FindFrontTriangles(camera, model.view, T_camera_model, scratch);
   const float near = (R * model.centre + t).z() / params.max_depth_ratio;
 
   const auto for_each_edge = [&](const auto& use) {
     for (std::size_t e = 0; e < model.edges.size(); ++e) {
-      if (model.convex ? !HasEdge(visible, e) : !model.FacesEye(e, eye)) continue;
+      if (!model.FacesEye(e, eye)) continue;
       const Vector3 a = R * model.edges[e].a + t, b = R * model.edges[e].b + t;
       if (a.z() < near || b.z() < near) continue;
       const Seen pa = ProjectPoint(camera, a), pb = ProjectPoint(camera, b);

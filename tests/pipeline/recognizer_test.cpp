@@ -1,0 +1,302 @@
+// The recognizer as a whole: finds what is there, keeps no state between frames, refuses what it
+// cannot use.
+#include "pipeline/recognizer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "recognizer_dump.h"
+#include "tests/golden/golden_frames.h"
+
+namespace wirepose {
+namespace {
+
+using testing::StereoImages;
+
+Recognizer& TheRecognizer() {
+  static Recognizer recognizer;
+  return recognizer;
+}
+
+RecognizerError Process(const StereoImages& images, RecognitionResult& result,
+                        StageObserver* observer = nullptr) {
+  return TheRecognizer().Process(images.left.view(), images.right.view(), observer, result);
+}
+
+class RecognizerTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(TheRecognizer().Configure(testing::GoldenCalibration()), RecognizerError::kOk);
+    TheRecognizer().ClearModels();
+  }
+  void AddModels() {
+    for (const auto& model : models_)
+      ASSERT_EQ(TheRecognizer().AddModel(model.View()), RecognizerError::kOk);
+  }
+
+  std::vector<tools::CompiledModel> models_ = testing::GoldenModels();
+  RecognitionResult result_;
+};
+
+// Largest distance of a vertex from its true place, modulo symmetry, as a share of the diameter.
+double ErrorShare(const PreparedModel& model, const Pose& estimate, const Pose& truth) {
+  double best = 1e9;
+  for (const Pose& symmetry : model.symmetries) {
+    double worst = 0;
+    for (std::size_t i = 0; i < model.view.vertices.size(); ++i) {
+      const Vector3d p = model.view.VertexPosition(i).cast<double>();
+      worst = std::max(worst, (estimate * p - truth * (symmetry * p)).norm());
+    }
+    best = std::min(best, worst);
+  }
+  return best / static_cast<double>(model.view.diameter_m);
+}
+
+// Freshly rendered kitchens: most well visible objects are found, nearly nothing else, and what is
+// found is close.
+TEST_F(RecognizerTest, FindsObjectsInRenderedKitchens) {
+  AddModels();
+  std::vector<std::unique_ptr<PreparedModel>> prepared;
+  for (const auto& model : models_) {
+    prepared.push_back(std::make_unique<PreparedModel>());
+    PrepareModel(model.View(), *prepared.back());
+  }
+  auto targets = sim::LoadTargetMeshes(WIREPOSE_MODELS);
+  ASSERT_TRUE(targets);
+  targets->resize(3);
+  int visible = 0, found = 0, false_alarms = 0;
+  double worst = 0;
+#ifdef __SANITIZE_ADDRESS__
+  constexpr std::uint64_t kLast = 201;  // rendering takes ten times as long
+#else
+  constexpr std::uint64_t kLast = 203;
+#endif
+  for (std::uint64_t seed = 201; seed <= kLast; ++seed) {
+    sim::VideoConfig config;
+    config.seed = seed;
+    config.samples_per_side = 2;
+    config.calibration = testing::GoldenCalibration();
+    const auto video = sim::KitchenVideo::Create(config, *targets);
+    ASSERT_TRUE(video);
+    const sim::StereoShot shot = video->Shoot(0);
+    ASSERT_EQ(Process({shot.left, shot.right}, result_), RecognizerError::kOk);
+    std::vector<bool> used(result_.detections.size());
+    for (const sim::ObjectTruth& object : shot.truth.objects) {
+      const PreparedModel& model = *prepared[static_cast<std::size_t>(object.obj_id - 1)];
+      bool hit = false;
+      for (std::size_t i = 0; i < used.size() && !hit; ++i) {
+        const Detection& d = result_.detections[i];
+        if (used[i] || static_cast<int>(d.model_id) != object.obj_id) continue;
+        const double error = ErrorShare(model, d.T_camera_model, object.T_camera_object);
+        if (error > 0.1) continue;
+        used[i] = hit = true;
+        worst = std::max(worst, error);
+        const Eigen::LDLT<Matrix6d> ldlt(d.covariance);
+        EXPECT_GT(ldlt.vectorD().minCoeff(), 0);
+      }
+      if (object.visib_fract < 0.6) continue;
+      ++visible;
+      found += hit ? 1 : 0;
+    }
+    for (const bool u : used) false_alarms += u ? 0 : 1;
+  }
+  printf("%d of %d visible objects found, %d false alarms, largest error %.3f of the diameter\n",
+         found, visible, false_alarms, worst);
+  EXPECT_GE(visible, 1);
+  EXPECT_GE(2 * found, visible);
+  EXPECT_LE(false_alarms, 2);
+}
+
+TEST_F(RecognizerTest, SameFrameSameBytes) {
+  AddModels();
+  const StereoImages frame = testing::GoldenFrame(0);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  const std::string first = testing::DumpAll(TheRecognizer(), result_);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), first);
+  EXPECT_GT(TheRecognizer().lines().size(), 50U);
+}
+
+TEST_F(RecognizerTest, NoStateLeaksBetweenFrames) {
+  AddModels();
+  const StereoImages a = testing::GoldenFrame(0), b = testing::GoldenFrame(1);
+  const StereoImages black{{640, 480, std::vector<std::uint8_t>(640 * 480)},
+                           {640, 480, std::vector<std::uint8_t>(640 * 480)}};
+  ASSERT_EQ(Process(a, result_), RecognizerError::kOk);
+  const std::string alone = testing::DumpAll(TheRecognizer(), result_);
+  for (const StereoImages& between : {b, black}) {
+    ASSERT_EQ(Process(between, result_), RecognizerError::kOk);
+    EXPECT_NE(testing::DumpAll(TheRecognizer(), result_), alone);
+    ASSERT_EQ(Process(a, result_), RecognizerError::kOk);
+    EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), alone);
+  }
+  // Nor from an earlier calibration or other models.
+  StereoCalibration other = testing::GoldenCalibration();
+  other.left.fx = 400;
+  ASSERT_EQ(TheRecognizer().Configure(other), RecognizerError::kOk);
+  ASSERT_EQ(Process(b, result_), RecognizerError::kOk);
+  TheRecognizer().ClearModels();
+  ASSERT_EQ(TheRecognizer().Configure(testing::GoldenCalibration()), RecognizerError::kOk);
+  AddModels();
+  ASSERT_EQ(Process(a, result_), RecognizerError::kOk);
+  EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), alone);
+}
+
+// The image planes are the caller's: a view with another stride gives the same bytes.
+TEST_F(RecognizerTest, StrideDoesNotMatter) {
+  AddModels();
+  const StereoImages frame = testing::GoldenFrame(1);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  const std::string expected = testing::DumpAll(TheRecognizer(), result_);
+  std::vector<std::uint8_t> left(700 * 480, 13), right(700 * 480, 14);
+  for (int y = 0; y < 480; ++y) {
+    std::copy_n(frame.left.view().row(y), 640, left.data() + y * 700);
+    std::copy_n(frame.right.view().row(y), 640, right.data() + y * 700);
+  }
+  ASSERT_EQ(TheRecognizer().Process({left.data(), 640, 480, 700}, {right.data(), 640, 480, 700},
+                                    nullptr, result_),
+            RecognizerError::kOk);
+  EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), expected);
+}
+
+TEST_F(RecognizerTest, EmptyScenesGiveEmptyResults) {
+  AddModels();
+  for (const std::uint8_t level : {0, 128, 255}) {
+    const dataset::GrayImage flat{640, 480, std::vector<std::uint8_t>(640 * 480, level)};
+    ASSERT_EQ(Process({flat, flat}, result_), RecognizerError::kOk);
+    EXPECT_TRUE(result_.detections.empty());
+    EXPECT_TRUE(TheRecognizer().lines().empty());
+  }
+  // Without models there are features but no objects.
+  TheRecognizer().ClearModels();
+  ASSERT_EQ(Process(testing::GoldenFrame(0), result_), RecognizerError::kOk);
+  EXPECT_TRUE(result_.detections.empty());
+  EXPECT_FALSE(TheRecognizer().lines().empty());
+}
+
+TEST_F(RecognizerTest, StatisticsDescribeTheFrame) {
+  AddModels();
+  ASSERT_EQ(Process(testing::GoldenFrame(2), result_), RecognizerError::kOk);
+  const RecognitionStatistics& s = result_.statistics;
+  EXPECT_EQ(s.left_segments.used, TheRecognizer().left_segments().size());
+  EXPECT_EQ(s.right_segments.used, TheRecognizer().right_segments().size());
+  EXPECT_EQ(s.lines.used, TheRecognizer().lines().size());
+  EXPECT_EQ(s.detections.used, result_.detections.size());
+  for (const ListUse& use : {s.left_segments, s.right_segments, s.lines, s.line_sets,
+                             s.correspondences, s.hypotheses, s.detections}) {
+    EXPECT_GT(use.capacity, 0U);
+    EXPECT_LE(use.used, use.capacity);
+  }
+  for (std::size_t i = 0; i < result_.detections.size(); ++i) {
+    const Detection& d = result_.detections[i];
+    EXPECT_TRUE(d.score >= 0 && d.score <= 1);
+    EXPECT_TRUE(d.visible_fraction >= 0 && d.visible_fraction <= 1.001F);
+    EXPECT_LE(d.score, result_.detections[i == 0 ? 0 : i - 1].score);
+    for (const SetMember& m : TheRecognizer().line_set(i))
+      EXPECT_LT(m.line, TheRecognizer().lines().size());
+  }
+}
+
+TEST_F(RecognizerTest, StagesAreObservedInOrder) {
+  class Recorder final : public StageObserver {
+   public:
+    std::vector<Stage> stages;
+
+   private:
+    void DoStageDone(Stage stage) override { stages.push_back(stage); }
+  };
+  AddModels();
+  Recorder recorder;
+  ASSERT_EQ(Process(testing::GoldenFrame(0), result_, &recorder), RecognizerError::kOk);
+  ASSERT_GE(recorder.stages.size(), kStageCount);
+  EXPECT_EQ(recorder.stages.front(), Stage::kRectify);
+  EXPECT_EQ(recorder.stages[1], Stage::kSegments);
+  EXPECT_EQ(recorder.stages.back(), Stage::kSelect);
+  EXPECT_EQ(std::set<Stage>(recorder.stages.begin(), recorder.stages.end()).size(), kStageCount);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < kStageCount; ++i) names.insert(StageName(static_cast<Stage>(i)));
+  EXPECT_EQ(names.size(), kStageCount);
+}
+
+TEST_F(RecognizerTest, RefusesImagesOfAnotherSize) {
+  AddModels();
+  const StereoImages frame = testing::GoldenFrame(0);
+  const ImageView good = frame.left.view();
+  ImageView narrow = good, low = good, none = good;
+  narrow.width = 639;
+  low.height = 479;
+  none.data = nullptr;
+  for (const ImageView& bad : {narrow, low, none}) {
+    EXPECT_EQ(TheRecognizer().Process(bad, good, nullptr, result_),
+              RecognizerError::kImageSizeMismatch);
+    EXPECT_EQ(TheRecognizer().Process(good, bad, nullptr, result_),
+              RecognizerError::kImageSizeMismatch);
+    EXPECT_TRUE(result_.detections.empty());
+  }
+}
+
+TEST_F(RecognizerTest, RefusesModelsBeyondCapacityAndDuplicates) {
+  ModelView view = models_[0].View();
+  for (std::uint32_t id = 1; id <= kMaxModels; ++id) {
+    view.id = id;
+    ASSERT_EQ(TheRecognizer().AddModel(view), RecognizerError::kOk);
+    ASSERT_EQ(TheRecognizer().AddModel(view), RecognizerError::kDuplicateModel);
+    ASSERT_EQ(TheRecognizer().models().size(), id);
+  }
+  view.id = kMaxModels + 1;
+  EXPECT_EQ(TheRecognizer().AddModel(view), RecognizerError::kTooManyModels);
+  EXPECT_EQ(TheRecognizer().models().size(), kMaxModels);
+  TheRecognizer().ClearModels();
+  EXPECT_TRUE(TheRecognizer().models().empty());
+  EXPECT_EQ(TheRecognizer().AddModel(view), RecognizerError::kOk);
+}
+
+TEST_F(RecognizerTest, RefusesBadCalibrationsAndKeepsTheGoodOne) {
+  AddModels();
+  const StereoImages frame = testing::GoldenFrame(0);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  const std::string before = testing::DumpAll(TheRecognizer(), result_);
+  for (const auto& [width, height] :
+       {std::pair(641, 480), {640, 481}, {63, 480}, {640, 63}, {0, 0}, {-640, 480}}) {
+    StereoCalibration c = testing::GoldenCalibration();
+    c.width = width;
+    c.height = height;
+    EXPECT_EQ(TheRecognizer().Configure(c), RecognizerError::kImageTooLarge);
+  }
+  StereoCalibration c = testing::GoldenCalibration();
+  c.T_right_left.t.setZero();
+  EXPECT_EQ(TheRecognizer().Configure(c), RecognizerError::kBadCalibration);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), before);
+}
+
+TEST(NewRecognizer, RefusesToProcess) {
+  static Recognizer recognizer;
+  static RecognitionResult result;
+  const std::vector<std::uint8_t> pixels(640 * 480);
+  const ImageView image{pixels.data(), 640, 480, 640};
+  EXPECT_EQ(recognizer.Process(image, image, nullptr, result), RecognizerError::kNotConfigured);
+}
+
+TEST(Messages, NameEveryError) {
+  std::set<std::string> texts;
+  for (int e = 0; e <= static_cast<int>(RecognizerError::kDuplicateModel); ++e) {
+    const std::string text = Describe(static_cast<RecognizerError>(e));
+    EXPECT_EQ(text.find('\n'), std::string::npos);
+    EXPECT_NE(text, "?");
+    texts.insert(text);
+  }
+  EXPECT_EQ(texts.size(), static_cast<std::size_t>(RecognizerError::kDuplicateModel) + 1);
+}
+
+// Everything is part of the object: the budget of the whole recognizer, 640 x 480 and 16 models.
+TEST(Memory, IsStatic) {
+  RecordProperty("bytes", std::to_string(sizeof(Recognizer)));
+  printf("Recognizer: %.1f MiB\n", static_cast<double>(sizeof(Recognizer)) / (1 << 20));
+  EXPECT_LE(sizeof(Recognizer), std::size_t{8} << 20);
+}
+
+}  // namespace
+}  // namespace wirepose

@@ -1,0 +1,155 @@
+// Promotion: alignment of a pose to all lines that agree with it, ranking, and poses that are one.
+#include "stages/promotion.h"
+
+#include <gtest/gtest.h>
+
+#include "rendered_scene.h"
+
+namespace wirepose {
+namespace {
+
+using testing::Cases;
+using testing::Random;
+using testing::TestModel;
+
+Hypothesis HypothesisOf(const Pose& T, float score = 1) {
+  Hypothesis h;
+  h.R = T.R.cast<float>();
+  h.t = T.t.cast<float>();
+  h.score = score;
+  return h;
+}
+
+Pose PoseOf(const CorrespondingSet& set) { return {set.R.cast<double>(), set.t.cast<double>()}; }
+
+bool Same(const PreparedModel& model, const Pose& p, const Pose& q, double tolerance) {
+  return IsSamePose(model, p.R.cast<float>(), p.t.cast<float>(), q.R.cast<float>(),
+                    q.t.cast<float>(), static_cast<float>(tolerance));
+}
+
+TEST(SamePose, AgreesWithCornersModuloSymmetry) {
+  Random random(1);
+  for (const char* name : {"parcel_box", "juice_dispenser"}) {
+    const TestModel model = testing::Load(name);
+    int same = 0;
+    for (int k = 0; k < Cases(2000); ++k) {
+      const Pose p = testing::AnyView(random, *model, testing::TestCamera(), 300);
+      const Pose& symmetry = model->symmetries[static_cast<std::size_t>(
+          random.Below(static_cast<int>(model->symmetries.size())))];
+      const Pose q =
+          testing::Shaken(random, p * symmetry, random.Uniform(0, 0.1), random.Uniform(0, 0.02));
+      const double error = testing::CornerError(*model, p, q);
+      if (std::abs(error - 0.02) < 1e-5) continue;
+      ASSERT_EQ(Same(*model, p, q, 0.02), error < 0.02) << error;
+      same += error < 0.02 ? 1 : 0;
+    }
+    EXPECT_GT(same, Cases(200));
+    EXPECT_LT(same, Cases(1800));
+  }
+}
+
+TEST(SamePose, HalfTurnOfTheDispenserIsAnotherPose) {
+  const TestModel model = testing::Load("juice_dispenser");
+  ASSERT_EQ(model->symmetries.size(), 1U);
+  const Pose p{Matrix3d::Identity(), {0, 0, 1}};
+  EXPECT_FALSE(Same(*model, p, p * Pose{ExpSo3({0, 0, M_PI}), Vector3d::Zero()}, 0.02));
+}
+
+// Alignment brings a shaken pose closer to the truth, and the set holds the lines that belong to
+// the object.
+TEST(Promotion, AlignsToAllLines) {
+  Random random(2);
+  for (const char* name : {"parcel_box", "juice_dispenser"}) {
+    const TestModel model = testing::Load(name);
+    const auto sets = std::make_unique<CorrespondingSets>();
+    int promoted = 0, closer = 0, members = 0, true_members = 0;
+    double before = 0, after = 0;
+    for (int k = 0; k < Cases(40); ++k) {
+      const Pose T = testing::AnyView(random, *model, testing::TestCamera(), 300);
+      const auto scene = testing::MakeScene(random, *model, T);
+      const SceneEdges edges{scene->camera, scene->left, scene->right};
+      const PoseScoreParams params;
+      const PoseScorer scorer(params, edges, *model);
+      const Hypothesis h = HypothesisOf(testing::Shaken(random, T, 0.02, 0.006));
+      PromoteSets({}, scorer, scene->camera, *model, scene->lines, {&h, 1}, *sets);
+      if (sets->empty()) continue;
+      ++promoted;
+      const CorrespondingSet& set = sets->front();
+      const double error_before =
+          testing::CornerError(*model, {h.R.cast<double>(), h.t.cast<double>()}, T);
+      const double error_after = testing::CornerError(*model, PoseOf(set), T);
+      before += error_before;
+      after += error_after;
+      closer += error_after < error_before ? 1 : 0;
+      EXPECT_LE(set.members.size(), set.line_count);
+      for (const SetMember& member : set.members) {
+        ASSERT_LT(member.line, scene->lines.size());
+        ++members;
+        true_members += scene->edge_of_line[member.line] == member.edge ? 1 : 0;
+      }
+    }
+    printf("%s: %d promoted, %d closer, mean error %.2f -> %.2f mm, %d of %d members right\n", name,
+           promoted, closer, 1e3 * before / promoted, 1e3 * after / promoted, true_members,
+           members);
+    EXPECT_GE(promoted, 0.9 * Cases(40));
+    EXPECT_GE(closer, 0.85 * promoted);
+    EXPECT_LT(after, 0.5 * before);
+    EXPECT_GE(true_members, 0.75 * members);
+  }
+}
+
+// The truth among wrong poses: it comes first, ranks fall, no pose comes twice.
+TEST(Promotion, RanksByLinesAndSurfaces) {
+  Random random(3);
+  const TestModel model = testing::Load("parcel_box");
+  const auto sets = std::make_unique<CorrespondingSets>();
+  int first = 0;
+  const int count = Cases(20);
+  for (int k = 0; k < count; ++k) {
+    const Pose T = testing::AnyView(random, *model, testing::TestCamera(), 300);
+    const auto scene = testing::MakeScene(random, *model, T);
+    const SceneEdges edges{scene->camera, scene->left, scene->right};
+    const PoseScoreParams params;
+    const PoseScorer scorer(params, edges, *model);
+    std::vector<Hypothesis> hypotheses;
+    for (int i = 0; i < 20; ++i)
+      hypotheses.push_back(
+          HypothesisOf(testing::Shaken(random, T, 0.3, 0.05), static_cast<float>(30 - i)));
+    hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 5));
+    hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 4));
+    PromoteSets({}, scorer, scene->camera, *model, scene->lines, hypotheses, *sets);
+    ASSERT_FALSE(sets->empty());
+    const double tolerance =
+        static_cast<double>(PromotionParams{}.duplicate_share * model->view.diameter_m);
+    for (std::size_t i = 0; i < sets->size(); ++i) {
+      const CorrespondingSet& set = (*sets)[i];
+      EXPECT_LE(set.rank, (*sets)[0].rank);
+      EXPECT_LE(set.face_count, 3);
+      EXPECT_LE(set.line_count, 9);
+      EXPECT_NEAR(set.rank,
+                  set.score + PromotionParams{}.line_gain * set.line_count +
+                      PromotionParams{}.face_gain * set.face_count,
+                  1e-3F);
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_FALSE(Same(*model, PoseOf(set), PoseOf((*sets)[j]), tolerance));
+    }
+    if (testing::CornerError(*model, PoseOf(sets->front()), T) < 0.02) ++first;
+  }
+  EXPECT_GE(first, 0.9 * count);
+}
+
+TEST(Promotion, NoHypothesesNoSets) {
+  Random random(4);
+  const TestModel model = testing::Load("parcel_box");
+  const auto scene = testing::MakeScene(
+      random, *model, testing::AnyView(random, *model, testing::TestCamera(), 300));
+  const SceneEdges edges{scene->camera, scene->left, scene->right};
+  const PoseScoreParams params;
+  const PoseScorer scorer(params, edges, *model);
+  const auto sets = std::make_unique<CorrespondingSets>();
+  PromoteSets({}, scorer, scene->camera, *model, scene->lines, {}, *sets);
+  EXPECT_TRUE(sets->empty());
+}
+
+}  // namespace
+}  // namespace wirepose
