@@ -11,7 +11,8 @@
 
 #include "model/prepared_model.h"
 #include "stage_test_support.h"
-#include "tests/tools/model_test_meshes.h"
+#include "tests/mesh/test_meshes.h"
+#include "tests/tools/model_test_options.h"
 #include "tools/model_compiler/model_compiler.h"
 
 namespace wirepose::testing {
@@ -36,7 +37,7 @@ inline TestModel Load(const std::string& name) {
   return Prepare(std::move(*file));
 }
 
-inline TestModel Compile(const tools::Mesh& mesh) {
+inline TestModel Compile(const mesh::Mesh& mesh) {
   auto file = tools::CompileModel(mesh, TestOptions());
   if (!file) throw std::runtime_error(file.error());
   return Prepare(std::move(*file));
