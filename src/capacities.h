@@ -17,7 +17,7 @@ inline constexpr std::size_t kMaxPixels = std::size_t{kMaxImageWidth} * kMaxImag
 // --- Features ------------------------------------------------------------------------------------------------------
 // Real kitchens show 150-300 segments of 12 px and more; the longest are kept.
 inline constexpr std::size_t kMaxSegments = 512;
-// Pixels on edge ridges: a sixth of a 640x480 image; photographs of clutter have 15,000 to 30,000. The lowest rows go first.
+// Pixels on edge ridges: a sixth of a 640x480 image; photographs of clutter have 15,000 to 30,000. The weakest go first.
 inline constexpr std::size_t kMaxRidgePixels = 51200;
 // One connected edge; longer than any straight line in the image.
 inline constexpr std::size_t kMaxChain = 2048;

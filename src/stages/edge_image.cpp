@@ -83,20 +83,68 @@ void SortRidges(EdgeImage& image) {
   for (std::uint32_t k = 0; k < image.ridge_count; ++k) image.ridge_pixels[start[bucket(image.found[k])]++] = image.found[k];
 }
 
-// Marks and collects the ridge pixels of row y, columns [begin, end).
-void CollectRow(int y, int begin, int end, EdgeImage& out) {
-  for (int x = begin; x < end; ++x) {
-    const std::size_t i = EdgeImage::Index(x, y);
-    if (out.magnitude[i] < out.threshold) continue;
-    const Ridge ridge = ClassifyPixel(out, i);
-    if (ridge == Ridge::kNone) continue;
-    if (out.ridge_count == kMaxRidgePixels) {
-      ++out.ridge_dropped;
-      continue;
+std::size_t BucketOf(std::uint16_t magnitude) { return std::min<std::size_t>(magnitude / 16, kLastBucket); }
+
+// Calls use(i) for every ridge pixel with at least `threshold` of magnitude, and writes its kind to image.ridge.
+template <typename Use>
+void ForEachRidge(const RectificationMap& map, std::uint16_t threshold, EdgeImage& image, const Use& use) {
+  for (int y = kBorder; y < image.height - kBorder; ++y) {
+    const auto [begin, end] = map.valid[static_cast<std::size_t>(y)];
+    for (int x = begin + kBorder; x < end - kBorder; ++x) {
+      const std::size_t i = EdgeImage::Index(x, y);
+      if (image.magnitude[i] < threshold) continue;
+      const Ridge ridge = ClassifyPixel(image, i);
+      if (ridge == Ridge::kNone) continue;
+      image.ridge[i] = static_cast<std::uint8_t>(ridge);
+      use(static_cast<std::uint32_t>(i));
     }
-    out.ridge[i] = static_cast<std::uint8_t>(ridge);
-    out.found[out.ridge_count++] = static_cast<std::uint32_t>(i);
   }
+}
+
+void ClearRidges(EdgeImage& image) {
+  for (int y = 0; y < image.height; ++y) {
+    std::uint8_t* row = image.ridge.data() + EdgeImage::Index(0, y);
+    std::fill(row, row + image.width, std::uint8_t{0});
+  }
+  image.ridge_count = image.ridge_dropped = 0;
+}
+
+// After an overflow: counts all ridges by strength and collects again, the strongest only.
+void CollectStrongest(const RectificationMap& map, EdgeImage& image) {
+  std::array<std::uint32_t, kLastBucket + 1> histogram{};
+  ClearRidges(image);
+  std::uint32_t total = 0;
+  ForEachRidge(map, image.threshold, image, [&](std::uint32_t i) {
+    ++histogram[BucketOf(image.magnitude[i])];
+    ++total;
+  });
+  std::size_t border = kLastBucket;  // the strength of which only some have room
+  std::uint32_t stronger = 0;
+  while (border > 0 && stronger + histogram[border] <= kMaxRidgePixels) stronger += histogram[border--];
+  std::uint32_t room = static_cast<std::uint32_t>(kMaxRidgePixels) - stronger;
+  ClearRidges(image);
+  const auto threshold = std::max<std::size_t>(border * 16, image.threshold);
+  ForEachRidge(map, static_cast<std::uint16_t>(threshold), image, [&](std::uint32_t i) {
+    if (BucketOf(image.magnitude[i]) == border && room-- == 0) {
+      ++room;
+      image.ridge[i] = 0;
+    } else {
+      image.found[image.ridge_count++] = i;
+    }
+  });
+  image.ridge_dropped = total - image.ridge_count;
+}
+
+void CollectRidges(const RectificationMap& map, EdgeImage& image) {
+  ClearRidges(image);
+  ForEachRidge(map, image.threshold, image, [&](std::uint32_t i) {
+    if (image.ridge_count < kMaxRidgePixels) {
+      image.found[image.ridge_count++] = i;
+    } else {
+      ++image.ridge_dropped;
+    }
+  });
+  if (image.ridge_dropped > 0) CollectStrongest(map, image);
 }
 
 }  // namespace
@@ -133,14 +181,7 @@ void FindRidges(const SmoothPlane& smooth, int width, int height, const Rectific
   const float threshold = std::max(params.noise_factor * noise, params.min_gradient * kGradientOne);
   // Texture everywhere must not silence the edges: the noise estimate is trusted up to 4 grey levels per pixel.
   out.threshold = static_cast<std::uint16_t>(std::min(threshold, 4.0F * kGradientOne));
-  out.ridge_count = out.ridge_dropped = 0;
-  for (int y = 0; y < height; ++y) {
-    std::uint8_t* ridge = out.ridge.data() + EdgeImage::Index(0, y);
-    std::fill(ridge, ridge + width, std::uint8_t{0});
-    if (y < kBorder || y >= height - kBorder) continue;
-    const auto [begin, end] = map.valid[static_cast<std::size_t>(y)];
-    CollectRow(y, begin + kBorder, end - kBorder, out);
-  }
+  CollectRidges(map, out);
   SortRidges(out);
 }
 

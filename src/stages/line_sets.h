@@ -62,7 +62,8 @@ static_assert(kMaxImageLinePairs <= 0xFFFF);
 
 // Every line with depth becomes a base line; its members are the lines with depth within reach, parallel or not, and
 // the lines without depth that meet it at a junction. When there are too many pairs, those of long, well measured lines
-// are kept. O(lines^2 log pairs).
+// are kept; `dropped` counts those that were measured and given up, not those that could not have ranked at all.
+// O(lines^2 log pairs).
 void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines, ImageLineSets& out);
 
 // Standard deviation of a line's direction, from the disparity covariance; pi/2 at most.

@@ -112,7 +112,7 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
     const PoseScoreParams params;
     const PoseScorer scorer(params, edges, *model);
     std::vector<Hypothesis> hypotheses;
-    for (int i = 0; i < 20; ++i)
+    for (int i = 0; i < 10; ++i)
       hypotheses.push_back(
           HypothesisOf(testing::Shaken(random, T, 0.3, 0.05), static_cast<float>(30 - i)));
     hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 5));
