@@ -31,6 +31,7 @@ class FixedText {
   [[nodiscard]] const char* c_str() const { return chars_.data(); }
   operator std::string_view() const { return chars_.data(); }  // NOLINT(google-explicit-constructor)
   bool operator==(std::string_view other) const { return std::string_view(*this) == other; }
+  bool operator==(const FixedText& other) const { return *this == std::string_view(other); }
 
  private:
   std::array<char, kCapacity> chars_{};
