@@ -128,10 +128,31 @@ function histogram(title, values, label, options) {
   return c.figure;
 }
 
+// Instances by range, the found ones at the bottom of each bar.
+function rangeChart(instances) {
+  const title = 'Found and missed by range';
+  if (!instances.length) return emptyChart(title, 'No instances.');
+  const to = Math.ceil(Math.max(...instances.map((i) => i.pose.range_m)) * 4 + 1e-9) / 4, bins = Math.max(4, Math.round(to / 0.25)), width = to / bins;
+  const found = new Array(bins).fill(0), all = new Array(bins).fill(0);
+  for (const i of instances) {
+    const bin = Math.min(bins - 1, Math.floor(i.pose.range_m / width));
+    ++all[bin];
+    if (i.hit) ++found[bin];
+  }
+  const c = chart(title, { from: 0, to, label: 'range, m' },
+    { from: 0, to: Math.max(...all) * 1.12, label: 'instances', format: (v) => (Number.isInteger(v) ? String(v) : '') });
+  all.forEach((n, i) => {
+    const bar = (kind, low, high) => svg('rect', { class: kind, x: c.X(i * width) + 0.75, width: c.X(width) - c.X(0) - 1.5, y: c.Y(high), height: c.Y(low) - c.Y(high) },
+      svg('title', {}, `${fixed(i * width, 2)} to ${fixed((i + 1) * width, 2)} m: ${found[i]} of ${n} found`));
+    if (n) c.plot.append(bar('bar-found', 0, found[i]), bar('bar-missed', found[i], n));
+  });
+  return c.figure;
+}
+
 // Chi-square with 6 degrees of freedom.
 const chiSquare6 = (x) => x * x * Math.exp(-x / 2) / 16;
 
-function drawCharts(measures) {
+function drawCharts(measures, instances) {
   const { errors, total } = measures, nees = total.nees || { n: 0 };
   const median = (values, unit) => [[quantile(values, 0.5), `median ${fixed(quantile(values, 0.5), 2)} ${unit}`]];
   return [
@@ -142,5 +163,6 @@ function drawCharts(measures) {
     histogram('Normalised error squared (NEES)', errors.nees, 'NEES', {
       to: 30, expected: chiSquare6, marks: [[12.592, '95 % quantile']], empty: 'No hit with a covariance.',
       note: nees.coverage ? `inside the 50 / 90 / 95 / 99 % regions: ${['50', '90', '95', '99'].map((k) => percent(nees.coverage[k])).join(', ')}; line: what an honest covariance gives` : null }),
+    rangeChart(instances),
   ];
 }

@@ -80,11 +80,12 @@ function makeFilters() {
 
 // `columns`: [heading, value of a row for sorting, text (optional), class]. Numbers sort by size, falling first.
 function sortableTable(rows, columns, summary) {
-  const body = el('tbody', {}), heads = columns.map(([heading], k) => el('th', { scope: 'col' },
-    el('button', { type: 'button', on: { click: () => sortBy(k) } }, heading)));
-  const cell = (row) => ([, value, text], k) => {
-    const v = value(row);
-    return el(k === 0 ? 'th' : 'td', { class: typeof v === 'string' ? 'left' : null }, text ? text(row) : isNumber(v) ? String(v) : v ?? '–');
+  const isText = ([, value]) => rows.length > 0 && typeof value(rows[0]) === 'string';
+  const body = el('tbody', {}), heads = columns.map((column, k) => el('th', { scope: 'col', class: isText(column) ? 'left' : null },
+    el('button', { type: 'button', on: { click: () => sortBy(k) } }, column[0])));
+  const cell = (row) => (column, k) => {
+    const [, value, text] = column, v = value(row);
+    return el(k === 0 ? 'th' : 'td', { class: isText(column) ? 'left' : null }, text ? text(row) : isNumber(v) ? String(v) : v ?? '–');
   };
   const lines = rows.map((row) => {
     const line = el('tr', {}, columns.map(cell(row)));
@@ -207,9 +208,10 @@ function openViewer(item) {
   const drawing = picture(item.frame, windowAround(item.frame, box), { focus: item.kind === 'miss' ? item.what : null, caption: placeOf(item) });
   makeZoomable(drawing, item.frame);
   byId('viewer-picture').replaceChildren(drawing);
-  byId('viewer-side').replaceChildren(...[item.kind === 'frame' ? null : badge(item.cause), ...detailsOf(item)].filter(Boolean));
+  byId('viewer-side').replaceChildren(...[item.kind === 'frame' ? null : badge(item.cause), ...detailsOf(item), depthScale(item.frame)].filter(Boolean));
   showLayers();
   if (!byId('viewer').open) byId('viewer').showModal();
+  fitText(drawing);
 }
 
 function stepViewer(by) {
@@ -220,6 +222,12 @@ function stepViewer(by) {
 function showLayers() {
   const drawing = byId('viewer-picture').firstChild;
   if (drawing) for (const layer of LAYERS) drawing.classList.toggle('no-' + layer.id, !layer.on);
+}
+
+// What the colours of the 3D lines mean in this frame.
+function depthScale(frame) {
+  const { near, far } = depthRange(frame);
+  return near ? el('p', { class: 'depth-scale quiet' }, `3D lines: ${fixed(near, 2)} m`, el('span', {}), `${fixed(far, 2)} m`) : null;
 }
 
 function toggleLayer(k) {
@@ -281,7 +289,7 @@ function start() {
   byId('alarm-cards').append(...(alarms.length ? alarms.map(card) : [none('No false alarm.')]));
   byId('legend').append(...legend());
   byId('thumbnails').append(...frames.map(thumbnail));
-  byId('charts').append(...drawCharts(measures));
+  byId('charts').append(...drawCharts(measures, data.frames.flatMap((f) => f.instances).filter((i) => i.counts && i.pose)));
   byId('instance-table').append(instanceTable());
   document.querySelector('#instances .count').textContent = measures.total.instances;
   byId('stage-table').append(stageTable());

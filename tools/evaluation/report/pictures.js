@@ -19,13 +19,19 @@ const pieces = (list, stride = 4) => {
   return d;
 };
 
+const inverseDepths = (frame) => frame.lines.filter((_, i) => i % 5 === 4).map((z) => 1 / z);
+
+// Depths, m, at the two ends of the colour scale; the few lines beyond take the end's colour.
+function depthRange(frame) {
+  const inverse = inverseDepths(frame);
+  return { near: 1 / quantile(inverse, 0.95), far: 1 / quantile(inverse, 0.05) };
+}
+
 // 3D lines by depth, near red to far blue on a scale that is even in disparity; one path a colour.
 function depthLines(frame) {
-  const inverse = [];
-  for (let i = 4; i < frame.lines.length; i += 5) inverse.push(1 / frame.lines[i]);
-  const near = quantile(inverse, 0.95), far = quantile(inverse, 0.05), byColour = new Map();
-  inverse.forEach((v, k) => {
-    const share = Math.min(1, Math.max(0, (near - v) / Math.max(near - far, 1e-9)));
+  const { near, far } = depthRange(frame), byColour = new Map();
+  inverseDepths(frame).forEach((v, k) => {
+    const share = Math.min(1, Math.max(0, (1 / near - v) / Math.max(1 / near - 1 / far, 1e-9)));
     const hue = Math.round(share * 12) * 20;
     byColour.set(hue, (byColour.get(hue) || '') + pieces(frame.lines.slice(5 * k, 5 * k + 4)));
   });
@@ -100,10 +106,16 @@ function picture(frame, window, { focus = null, shown = null, caption = '' } = {
   return root;
 }
 
+// Keeps labels at one size on the screen, however far the picture is enlarged.
+function fitText(root) {
+  const [, , width, height] = root.getAttribute('viewBox').split(' ').map(Number);
+  root.style.setProperty('--px', Math.max(width / (root.clientWidth || 900), height / (root.clientHeight || 700)));
+}
+
 // Wheel zooms about the pointer, dragging moves, a double click shows all.
 function makeZoomable(root, frame) {
   const view = () => root.getAttribute('viewBox').split(' ').map(Number);
-  const show = (box) => { root.setAttribute('viewBox', box.join(' ')); root.style.setProperty('--px', box[2] / 900); };
+  const show = (box) => { root.setAttribute('viewBox', box.join(' ')); fitText(root); };
   const at = (event) => {
     const p = new DOMPoint(event.clientX, event.clientY).matrixTransform(root.getScreenCTM().inverse());
     return [p.x, p.y];
@@ -123,5 +135,4 @@ function makeZoomable(root, frame) {
   });
   root.addEventListener('pointerup', () => { grip = null; });
   root.addEventListener('dblclick', () => show(wholeFrame(frame)));
-  show(view());
 }
