@@ -19,11 +19,11 @@ using Match = std::vector<std::optional<std::size_t>>;
 struct Encounter {
   const FrameTruth* frame = nullptr;
   int object_id = 0;
-  const ObjectTruth* object = nullptr;  // null: detections of an object that the data set does not know
+  const ObjectTruth* object = nullptr;          // null: detections of an object that the data set does not know
   std::vector<const InstanceTruth*> instances;  // of frame->instances
-  std::vector<bool> counts;  // by instance
+  std::vector<bool> counts;                     // by instance
   std::vector<const Estimate*> detections;      // of the span that is judged
-  std::vector<std::vector<PoseError>> errors;  // [detection][instance]
+  std::vector<std::vector<PoseError>> errors;   // [detection][instance]
 };
 
 // Errors of `rows` (detections) by `columns` (instances).

@@ -27,11 +27,16 @@ bool SameDirection(const Vector3d& detected, const Vector3d& truth, double diame
 
 std::string_view CauseName(AlarmCause cause) {
   switch (cause) {
-    case AlarmCause::kDuplicate: return "duplicate";
-    case AlarmCause::kWrongPose: return "wrong pose";
-    case AlarmCause::kWrongDistance: return "wrong distance";
-    case AlarmCause::kOtherObject: return "other object";
-    case AlarmCause::kClutter: return "clutter";
+    case AlarmCause::kDuplicate:
+      return "duplicate";
+    case AlarmCause::kWrongPose:
+      return "wrong pose";
+    case AlarmCause::kWrongDistance:
+      return "wrong distance";
+    case AlarmCause::kOtherObject:
+      return "other object";
+    case AlarmCause::kClutter:
+      return "clutter";
   }
   return "?";
 }

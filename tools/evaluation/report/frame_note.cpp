@@ -71,11 +71,16 @@ Json DrawPose(const RectifiedCamera& camera, const ModelView& model, const Pose&
 
 Json EvidenceToJson(const Candidate& candidate) {
   const Evidence& e = candidate.evidence;
-  return {{"edges", e.edges},         {"contrast", e.contrast},
-          {"faces", e.faces},         {"overrun", e.overrun},
-          {"support", e.support},     {"inside", e.inside},
-          {"visible px", e.visible_px}, {"supported edges", e.supported_edges},
-          {"supported faces", e.supported_faces}, {"rms px", candidate.pose.rms_px},
+  return {{"edges", e.edges},
+          {"contrast", e.contrast},
+          {"faces", e.faces},
+          {"overrun", e.overrun},
+          {"support", e.support},
+          {"inside", e.inside},
+          {"visible px", e.visible_px},
+          {"supported edges", e.supported_edges},
+          {"supported faces", e.supported_faces},
+          {"rms px", candidate.pose.rms_px},
           {"inliers", candidate.pose.inliers}};
 }
 
@@ -103,7 +108,8 @@ DetectionNote NoteDetection(const FrameView& view, const PreparedModel& model, c
   DetectionNote note;
   note.facts = RelateToTruth(model, detection.T_camera_model, view.entry.gt, view.models);
   note.json = {{"object", detection.model_id}, {"score", detection.score}};
-  note.json["pose"] = DrawPose(recognizer.camera(), model.view, recognizer.T_rectified_raw() * detection.T_camera_model);
+  note.json["pose"] =
+      DrawPose(recognizer.camera(), model.view, recognizer.T_rectified_raw() * detection.T_camera_model);
   const Candidate* candidate = CandidateOf(recognizer, detection);
   note.json["evidence"] = candidate != nullptr ? EvidenceToJson(*candidate) : Json();
   return note;
@@ -126,9 +132,12 @@ Json NoteInstance(const FrameView& view, std::size_t i) {
   }
   json["pose"] = DrawPose(recognizer.camera(), *model, recognizer.T_rectified_raw() * truth.T_camera_model);
   json["cause"] = CauseName(CauseOf(trace));
-  json["trace"] = {{"visible_edges", trace.visible_edges}, {"found_edges", trace.found_edges},
-                   {"deep_edges", trace.deep_edges},       {"hypothesis", ToJson(trace.hypothesis)},
-                   {"set", ToJson(trace.set)},             {"candidate", ToJson(trace.candidate)}};
+  json["trace"] = {{"visible_edges", trace.visible_edges},
+                   {"found_edges", trace.found_edges},
+                   {"deep_edges", trace.deep_edges},
+                   {"hypothesis", ToJson(trace.hypothesis)},
+                   {"set", ToJson(trace.set)},
+                   {"candidate", ToJson(trace.candidate)}};
   if (trace.candidate.error_d >= 9) return json;
   const Candidate& nearest = recognizer.candidates()[trace.candidate.rank];
   json["candidate"] = DrawPose(recognizer.camera(), *model, nearest.pose.T_camera_model);
@@ -166,8 +175,8 @@ Result<FrameNote, std::string> TakeNote(const FrameView& view, double min_score)
                {"height", recognizer.camera().height},
                {"picture", EncodePicture(recognizer.left_rectified())}};
   if (note.json["picture"] == "") {
-    return unexpected<std::string>(fmt::format("{}: cannot be made a JPEG for the report; leave --report out",
-                                               view.entry.left_path.string()));
+    return unexpected<std::string>(
+        fmt::format("{}: cannot be made a JPEG for the report; leave --report out", view.entry.left_path.string()));
   }
   AddLines(recognizer, note.json);
   for (const Detection& d : view.result.detections) {

@@ -20,9 +20,10 @@ struct DetectionNote {
 };
 
 struct FrameNote {
-  nlohmann::ordered_json json;  // scene, image, width, height, picture, segments, lines
-  std::vector<DetectionNote> detections;          // with score >= min_score
-  std::vector<nlohmann::ordered_json> instances;  // all true ones: object, visible, pose, nearest candidate, trace, cause
+  nlohmann::ordered_json json;            // scene, image, width, height, picture, segments, lines
+  std::vector<DetectionNote> detections;  // with score >= min_score
+  std::vector<nlohmann::ordered_json>
+      instances;  // all true ones: object, visible, pose, nearest candidate, trace, cause
 };
 
 // Coordinates are pixels of the rectified left image, rounded to 0.1; poses are drawn wireframes:

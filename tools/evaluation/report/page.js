@@ -69,10 +69,10 @@ function makeFilters() {
   fill('scene', scenes.map((s) => [s, String(s)]));
   fill('object', Object.keys(data.objects).map((id) => [id, `${id} ${nameOf(id)}`]));
   fill('cause', causes.map((c) => [c, c]));
-  byId('filters').addEventListener('reset', () => setTimeout(() => {
-    for (const field of Object.keys(filter)) filter[field] = '';
-    applyFilter();
-  }));
+  byId('filters').addEventListener('reset', (event) => {
+    event.preventDefault();
+    for (const field of Object.keys(filter)) setFilter(field, '');
+  });
   byId('filters').addEventListener('submit', (event) => event.preventDefault());
 }
 
@@ -259,8 +259,8 @@ function stepMiss(by) {
 }
 
 function toggleTheme() {
-  const root = document.documentElement, dark = getComputedStyle(root).colorScheme.includes('dark') && !getComputedStyle(root).colorScheme.includes('light');
-  const now = root.dataset.theme || (dark || matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
+  const root = document.documentElement;
+  const now = root.dataset.theme || (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
   root.dataset.theme = now === 'dark' ? 'light' : 'dark';
 }
 

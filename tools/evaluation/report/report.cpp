@@ -19,10 +19,14 @@ using InstanceKey = std::pair<FrameKey, std::size_t>;
 
 const char* VerdictName(Verdict verdict) {
   switch (verdict) {
-    case Verdict::kHit: return "hit";
-    case Verdict::kFalse: return "false";
-    case Verdict::kDontCare: return "don't care";
-    case Verdict::kUnknownFrame: return "unknown frame";
+    case Verdict::kHit:
+      return "hit";
+    case Verdict::kFalse:
+      return "false";
+    case Verdict::kDontCare:
+      return "don't care";
+    case Verdict::kUnknownFrame:
+      return "unknown frame";
   }
   return "?";
 }
@@ -96,7 +100,8 @@ Result<void, std::string> Report::Add(const FrameView& view) {
   auto note = TakeNote(view, options_.min_score);
   if (!note) return unexpected<std::string>(note.error());
   frames_.push_back(std::move(*note));
-  for (const ScoredDetection& c : ScoredCandidates(view, MetricsOptions().min_visible_fraction)) candidates_.push_back(c);
+  for (const ScoredDetection& c : ScoredCandidates(view, MetricsOptions().min_visible_fraction))
+    candidates_.push_back(c);
   if (!objects_.is_null()) return {};
   for (const ModelView& model : view.models.views) {
     objects_[std::to_string(model.id)] = {{"name", model.name},
