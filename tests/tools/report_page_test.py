@@ -8,6 +8,7 @@ import os
 import re
 import sys
 
+sys.dont_write_bytecode = True  # nothing beside the sources
 from chromium import Page, find_chromium
 
 HOSTILE = "</script><img src=x onerror=1>"
