@@ -133,7 +133,7 @@ std::vector<cv::Matx33d> RotationsOf(const evaluation::ObjectTruth& object) {
 
 SurfaceSearch::SurfaceSearch(const mesh::Mesh& mesh, const evaluation::ObjectTruth& object)
     : diameter_m_(object.diameter_mm / 1000),
-      step_(object.symmetries.size() > 1 ? 0.07 : 0.05),
+      step_(object.symmetries.size() > 1 ? 0.07 : 0.06),
       symmetries_(RotationsOf(object)),
       detector_(step_, step_, kAngles) {
   const auto dense = Sample(mesh, 0.006 * diameter_m_);
