@@ -68,6 +68,13 @@ class Figures(unittest.TestCase):
         self.assertAlmostEqual(f["false alarms per frame"], 1 / 500)
 
 
+    def test_misses_by_cause_leave_hidden_objects_out(self):
+        rows = [{"visib_fract": "0.9", "cause": "rejected"}, {"visib_fract": "0.3", "cause": "rejected"},
+                {"visib_fract": "0.4", "cause": "no lines"}, {"visib_fract": "1.0", "cause": "found"}]
+        causes = targets.miss_causes(rows)
+        self.assertEqual((causes["rejected"], causes["no lines"], sum(causes.values())), (1, 1, 2))
+
+
 class Verdicts(unittest.TestCase):
     def test_of_a_share(self):
         recall = target("kitchen-sample", "recall")

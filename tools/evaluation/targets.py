@@ -137,6 +137,22 @@ def shown(target, values):
     return number(value) + (f" ({values[counts[0]]} of {values[counts[1]]})" if counts else "")
 
 
+CAUSES = ["no lines", "no hypothesis", "ranked out", "wrong pose", "rejected"]  # as `wirepose eval --trace` names them
+
+
+def miss_causes(trace_rows, min_visible=0.4):
+    """Misses by cause from the rows (dicts) of a trace file: the stage that lost each true object that counts."""
+    counted = [row["cause"] for row in trace_rows if float(row["visib_fract"]) >= min_visible]
+    return {cause: counted.count(cause) for cause in CAUSES}
+
+
+def causes_markdown(causes_by_data):
+    lines = ["| misses by the stage that lost them | " + " | ".join(CAUSES) + " |", "|" + "---|" * (len(CAUSES) + 1)]
+    for data, causes in causes_by_data.items():
+        lines.append(f"| {data} | " + " | ".join(str(causes[c]) for c in CAUSES) + " |")
+    return "\n".join(lines)
+
+
 HEADING = ["data", "measure", "must", "goal", "Wirepose", "verdict", "OpenCV PPF + ICP"]
 
 

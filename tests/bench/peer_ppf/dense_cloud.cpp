@@ -77,7 +77,8 @@ const std::vector<cv::Vec3f>& Directions() {
   static const std::vector<cv::Vec3f> directions = [] {
     std::vector<cv::Vec3f> all;
     for (int i = 14; i < 27; ++i) {  // half of the 26 neighbours of a cell
-      const cv::Vec3f d(static_cast<float>(i / 9 - 1), static_cast<float>(i / 3 % 3 - 1), static_cast<float>(i % 3 - 1));
+      const cv::Vec3f d(static_cast<float>(i / 9 - 1), static_cast<float>(i / 3 % 3 - 1),
+                        static_cast<float>(i % 3 - 1));
       all.push_back(d / cv::norm(d));
     }
     return all;
@@ -188,7 +189,9 @@ std::vector<OrientedPoint> Thin(const std::vector<OrientedPoint>& points, double
     std::array<int, 3> key{};
     for (int k = 0; k < 3; ++k) key[static_cast<std::size_t>(k)] = cvFloor(static_cast<double>(p.point[k]) / step_m);
     std::vector<Sum>& cell = cells[key];
-    const auto same = [&](const Sum& s) { return s.normal.dot(p.normal) > kSameNormal * static_cast<float>(cv::norm(s.normal)); };
+    const auto same = [&](const Sum& s) {
+      return s.normal.dot(p.normal) > kSameNormal * static_cast<float>(cv::norm(s.normal));
+    };
     const auto found = std::find_if(cell.begin(), cell.end(), same);
     if (found == cell.end()) {
       cell.push_back({p.point, p.normal, 1});

@@ -23,9 +23,9 @@ class StereoRig {
   };
   [[nodiscard]] Rectified Rectify(const cv::Mat& left, const cv::Mat& right) const;
 
-  cv::Matx33d R_raw_rectified;           // left camera
-  double f = 0, cx = 0, cy = 0;          // rectified, px
-  double f_baseline = 0;                 // px m
+  cv::Matx33d R_raw_rectified;   // left camera
+  double f = 0, cx = 0, cy = 0;  // rectified, px
+  double f_baseline = 0;         // px m
 
  private:
   cv::Mat map_left_[2], map_right_[2];

@@ -1,7 +1,8 @@
 // peer_ppf DATASET --out results.csv --json metrics.json [--limit N]: OpenCV's point-pair features on a data set.
 //
 // Every object of the data set is searched for in every frame, up to three poses each. The rows written are those above
-// the score that, known afterwards, gives the best harmonic mean of recall and precision: kinder than any user could be.
+// the score that, known afterwards, gives the best harmonic mean of recall and precision: kinder than any user could
+// be.
 #include <time.h>
 
 #include <CLI/CLI.hpp>
@@ -9,8 +10,8 @@
 #include <fstream>
 #include <map>
 #include <memory>
-#include <set>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -101,7 +102,8 @@ std::vector<Estimate> Search(const dataset::FrameEntry& entry, const StereoRig& 
 // The threshold with the best harmonic mean of precision and recall; above all scores when nothing is right.
 double BestThreshold(const std::vector<Estimate>& found, const Metrics& metrics) {
   double best = 0, threshold = 2;
-  for (const auto& p : evaluation::ScoreCurve(evaluation::CountedDetections(found, metrics), metrics.total.all.instances)) {
+  for (const auto& p :
+       evaluation::ScoreCurve(evaluation::CountedDetections(found, metrics), metrics.total.all.instances)) {
     if (p.precision + p.recall <= 0) continue;
     const double mean = 2 * p.precision * p.recall / (p.precision + p.recall);
     if (mean <= best) continue;

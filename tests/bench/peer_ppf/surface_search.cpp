@@ -10,7 +10,7 @@
 namespace wirepose::bench {
 namespace {
 
-constexpr int kAngles = 30;            // bins of PPF angles
+constexpr int kAngles = 30;  // bins of PPF angles
 constexpr std::size_t kVoted = 4000, kClusters = 1500, kVerified = 400, kAligned = 30;
 constexpr double kClusterD = 0.1, kClusterTurn = 18 * CV_PI / 180;
 constexpr double kLargePlaneD = 1.12;  // planes larger than this are no part of the object
@@ -98,7 +98,8 @@ std::vector<std::vector<OrientedPoint>> Tiles(const std::vector<OrientedPoint>& 
   std::map<std::array<int, 3>, std::pair<cv::Vec3f, int>> cells;
   for (const OrientedPoint& p : scene) {
     std::array<int, 3> key{};
-    for (int k = 0; k < 3; ++k) key[static_cast<std::size_t>(k)] = cvFloor(static_cast<double>(p.point[k]) / (0.5 * diameter_m));
+    for (int k = 0; k < 3; ++k)
+      key[static_cast<std::size_t>(k)] = cvFloor(static_cast<double>(p.point[k]) / (0.5 * diameter_m));
     auto& [sum, count] = cells[key];
     sum += p.point;
     ++count;
@@ -228,7 +229,8 @@ double SurfaceSearch::Verify(const DenseCloud& cloud, const SurfacePose& pose, d
       continue;
     }
     const int region = cloud.regions(s.pixel);
-    const bool large = region >= 0 && static_cast<double>(cloud.extents[static_cast<std::size_t>(region)]) > kLargePlaneD * diameter_m_;
+    const bool large = region >= 0 && static_cast<double>(cloud.extents[static_cast<std::size_t>(region)]) >
+                                          kLargePlaneD * diameter_m_;
     const double cosine = s.normal.dot(cv::Vec3d(cloud.normals(s.pixel)));  // NaN: no normal there
     if (large) {
       violates += 0.7;
