@@ -116,6 +116,12 @@ def check_keys(page, data):
     page.press("4")
     assert before != "none" == page.evaluate(display), "key 4 switches the truth"
     page.press("4")
+    image = "document.querySelector('#viewer-picture image').getAttribute('href')"
+    page.wait_for("document.querySelector('#viewer-picture image') !== null")
+    left = page.evaluate(image)
+    page.press("r")
+    page.wait_for("document.querySelector('#viewer-picture image') !== null")
+    assert page.evaluate(image) != left, "key R shows the right image"
     page.press("Escape", 27)
     page.wait_for(f"{active} === '{ids[1]}'")  # the card last looked at has the focus again
     assert not page.evaluate("document.getElementById('viewer').open")

@@ -174,9 +174,13 @@ TEST_F(ReportTest, HoldsEveryFalseAlarmWithItsCause) {
 TEST_F(ReportTest, HoldsPicturesLinesAndCurves) {
   ASSERT_EQ(data_.at("frames").size(), 3U);
   for (const Json& frame : data_.at("frames")) {
-    EXPECT_THAT(frame.at("picture").get<std::string>(), ::testing::StartsWith("data:image/jpeg;base64,/9j/"));
-    EXPECT_GT(frame.at("segments").size(), 4U * 50);
-    EXPECT_EQ(frame.at("lines").size() % 5, 0U);
+    for (const char* eye : {"left", "right"}) {
+      EXPECT_THAT(frame.at("pictures").at(eye).get<std::string>(),
+                  ::testing::StartsWith("data:image/jpeg;base64,/9j/"));
+      EXPECT_GT(frame.at("segments").at(eye).size(), 4U * 50);
+    }
+    EXPECT_GT(frame.at("lines").size(), 6U * 20);
+    EXPECT_EQ(frame.at("lines").size() % 6, 0U);
   }
   EXPECT_FALSE(data_.at("measures").at("score_curve").empty());
   EXPECT_TRUE(data_.at("measures").at("calibration").at("expected_error").is_number());
