@@ -2,10 +2,12 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <iterator>
+#include <span>
+#include <vector>
 
 #include "hal/dataset/dataset.h"
 #include "tests/targets/frame_pack.h"
-#include "tools/model_compiler/model_compiler.h"
 
 namespace wirepose::testing {
 namespace {
@@ -16,12 +18,13 @@ void Write(std::ofstream& out, const T* data, std::size_t count) {
 }
 
 std::string WriteModel(const char* file, std::ofstream& out) {
-  auto model = tools::ReadModelFile(file);
-  if (!model) return model.error();
-  const std::uint64_t size = model->bytes.size();
+  std::ifstream in(file, std::ios::binary);
+  std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
+  if (bytes.empty()) return std::string(file) + ": cannot be read; make it with wirepose model build";
+  const std::uint64_t size = bytes.size();
   Write(out, &size, 1);
-  model->bytes.resize((model->bytes.size() + 7) / 8 * 8);
-  Write(out, model->bytes.data(), model->bytes.size());
+  bytes.resize((bytes.size() + 7) / 8 * 8);
+  Write(out, bytes.data(), bytes.size());
   return {};
 }
 

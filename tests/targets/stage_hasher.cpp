@@ -68,7 +68,7 @@ void StageHasher::HashHypotheses(Digest& digest) const {
   HashUnordered(recognizer_.hypotheses(), digest, [](const Hypothesis& h, Digest& d) {
     d.Add(h.R, h.t, h.score, h.base_line, h.other_line, h.base_edge, h.other_edge);
   });
-  HashOrdered(recognizer_.corresponding_sets(), digest, [](const CorrespondingSet& set, Digest& d) {
+  HashOrdered(recognizer_.sets(), digest, [](const CorrespondingSet& set, Digest& d) {
     d.Add(set.R, set.t, set.line_count, set.face_count, set.score, set.rank);
     for (const SetMember& m : set.members) d.Add(m.line, m.edge);
   });
