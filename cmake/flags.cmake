@@ -29,6 +29,13 @@ target_compile_options(wirepose_core_rules INTERFACE
                             # Square roots are one instruction, and vectorize; no value changes.
                             -fno-math-errno -fno-trapping-math>)
 
+# For scripts/stack-depth: a call graph with frame sizes beside each object file. The compiler cache would forget them.
+option(WIREPOSE_CALL_GRAPH "Write call graphs of the core (GCC)" OFF)
+if(WIREPOSE_CALL_GRAPH)
+  target_compile_options(wirepose_core_rules INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fcallgraph-info=su,da>)
+  unset(CMAKE_CXX_COMPILER_LAUNCHER)
+endif()
+
 if(WIREPOSE_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)

@@ -12,16 +12,18 @@ namespace wirepose::testing {
 // Little-endian, in this order: PackHeader; for each model its size (8 bytes) and the .wpm file, padded with zeros to a
 // multiple of 8; for each frame the left and the right image, width * height bytes each, row by row.
 struct PackHeader {
-  static constexpr std::uint64_t kMagic = 0x314B434150505257;  // "WRPPACK1"
+  static constexpr std::uint64_t kMagic = 0x324B434150505257;  // "WRPPACK2"
 
   std::uint64_t magic = kMagic;
   std::uint32_t width = 0, height = 0;
   std::uint32_t models = 0, frames = 0;
+  std::uint32_t hash_stages = 1;  // 0: recognize only, to count instructions
+  std::uint32_t reserved = 0;
   std::array<std::array<double, 9>, 2> camera{};  // left, right: fx fy cx cy k1 k2 p1 p2 k3
   std::array<double, 9> R{};                      // of T_right_left, row by row
   std::array<double, 3> t{};                      // m
 };
-static_assert(sizeof(PackHeader) == 24 + 8 * (18 + 9 + 3), "no padding: the struct is the file's layout");
+static_assert(sizeof(PackHeader) == 32 + 8 * (18 + 9 + 3), "no padding: the struct is the file's layout");
 
 inline PackHeader HeaderOf(const StereoCalibration& c) {
   PackHeader header;

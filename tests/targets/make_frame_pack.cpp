@@ -1,9 +1,12 @@
-// Packs a data set for frame_hashes: make_frame_pack DATASET OUT FRAMES MODEL.wpm...
+// Packs a data set for frame_hashes: make_frame_pack [--no-hashes] DATASET OUT FRAMES MODEL.wpm...
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/dataset/dataset.h"
@@ -40,36 +43,52 @@ std::string WriteFrame(const dataset::FrameEntry& frame, const PackHeader& heade
   return {};
 }
 
+struct Job {
+  bool hash_stages = true;
+  std::string folder, file;
+  std::size_t frames = 0;
+  std::span<char*> models;
+};
+
 // Empty, or what went wrong in one line.
-std::string Pack(const char* folder, const char* file, std::size_t frames, std::span<char*> models) {
-  const auto dataset = dataset::ReadDataset(folder);
+std::string Pack(const Job& job) {
+  const auto dataset = dataset::ReadDataset(job.folder);
   if (!dataset) return dataset.error();
-  if (dataset->frames.size() < frames) return std::string(folder) + ": has fewer frames; render more";
-  std::ofstream out(file, std::ios::binary);
+  if (dataset->frames.size() < job.frames) return job.folder + ": has fewer frames; render more";
+  std::ofstream out(job.file, std::ios::binary);
   PackHeader header = HeaderOf(dataset->calibration);
-  header.models = static_cast<std::uint32_t>(models.size());
-  header.frames = static_cast<std::uint32_t>(frames);
+  header.models = static_cast<std::uint32_t>(job.models.size());
+  header.frames = static_cast<std::uint32_t>(job.frames);
+  header.hash_stages = job.hash_stages ? 1 : 0;
   Write(out, &header, 1);
-  for (const char* model : models) {
+  for (const char* model : job.models) {
     if (std::string error = WriteModel(model, out); !error.empty()) return error;
   }
-  for (std::size_t i = 0; i < frames; ++i) {
+  for (std::size_t i = 0; i < job.frames; ++i) {
     if (std::string error = WriteFrame(dataset->frames[i], header, out); !error.empty()) return error;
   }
-  return out.flush() ? std::string() : std::string(file) + ": cannot be written; check the folder and the disk";
+  return out.flush() ? std::string() : job.file + ": cannot be written; check the folder and the disk";
 }
 
 }  // namespace
 }  // namespace wirepose::testing
 
 int main(int argc, char** argv) {
-  if (argc < 5) {
-    std::cerr << "usage: make_frame_pack DATASET OUT FRAMES MODEL.wpm...\n";
+  std::span<char*> arguments(argv + 1, static_cast<std::size_t>(argc) - 1);
+  wirepose::testing::Job job;
+  if (!arguments.empty() && std::string_view(arguments[0]) == "--no-hashes") {
+    job.hash_stages = false;
+    arguments = arguments.subspan(1);
+  }
+  if (arguments.size() < 4) {
+    std::cerr << "usage: make_frame_pack [--no-hashes] DATASET OUT FRAMES MODEL.wpm...\n";
     return 2;
   }
-  const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
-  const auto frames = static_cast<std::size_t>(std::max(0, std::atoi(argv[3])));
-  const std::string error = wirepose::testing::Pack(argv[1], argv[2], frames, arguments.subspan(4));
+  job.folder = arguments[0];
+  job.file = arguments[1];
+  job.frames = static_cast<std::size_t>(std::max(0, std::atoi(arguments[2])));
+  job.models = arguments.subspan(3);
+  const std::string error = wirepose::testing::Pack(job);
   if (!error.empty()) std::cerr << "make_frame_pack: " << error << "\n";
   return error.empty() ? 0 : 1;
 }
