@@ -16,6 +16,7 @@ hal::ReplayConfig ReadReplay(YamlSection section) {
   section.Read("split", config.split);
   if (section.Read("scene", scene, 0, 999'999)) config.scene_id = static_cast<int>(scene);
   section.Read("loop", config.loop);
+  section.Read("preload", config.preload);
   section.Read("frame_rate_hz", config.frame_rate_hz, 0, 1000);
   section.Finish();
   return config;

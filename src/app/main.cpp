@@ -11,6 +11,7 @@
 #include "app/camera_factory.h"
 #include "app/config.h"
 #include "app/failure.h"
+#include "app/memory_lock.h"
 #include "app/model_store.h"
 #include "app/robot_loop.h"
 #include "app/service.h"
@@ -96,6 +97,7 @@ void Run(const Options& options) {
   OpenCamera(*camera);
   const auto opened = g_publisher.Open({config.bus, config.frame_id, WIREPOSE_VERSION}, g_recognizer.models());
   if (!opened) throw WorkFailed(opened.error());
+  if (const std::string warning = LockMemory(); !warning.empty()) std::fprintf(stderr, "wireposed: %s\n", warning.c_str());
   CheckCamera(camera->Start(), *camera);
 
   const std::string status = std::string(camera->name()) + " camera, " + std::to_string(g_recognizer.models().size()) +
