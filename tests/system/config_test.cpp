@@ -41,9 +41,9 @@ class ConfigTest : public ::testing::Test {
 TEST_F(ConfigTest, EmptyFileGivesDefaults) {
   const Config config = Load("");
   EXPECT_EQ(config.camera.backend, CameraBackend::kUnset);
-  EXPECT_EQ(config.bus.domain, 0u);
-  EXPECT_FALSE(config.bus.loopback);
-  EXPECT_EQ(config.frame_id, "wirepose_left_optical");
+  EXPECT_EQ(config.dds.bus.domain, 0u);
+  EXPECT_FALSE(config.dds.bus.loopback);
+  EXPECT_EQ(config.dds.frame_id, "wirepose_left_optical");
   EXPECT_TRUE(config.models.empty());
 }
 
@@ -73,9 +73,9 @@ search_for: [3, 1]
   EXPECT_EQ(config.camera.simulated.frame_rate_hz, 15);
   EXPECT_EQ(config.camera.simulated.samples_per_pixel, 25);
   EXPECT_EQ(config.camera.simulated.truth_path, folder / "truth.jsonl");
-  EXPECT_EQ(config.bus.domain, 42u);
-  EXPECT_TRUE(config.bus.loopback);
-  EXPECT_EQ(config.frame_id, "eye");
+  EXPECT_EQ(config.dds.bus.domain, 42u);
+  EXPECT_TRUE(config.dds.bus.loopback);
+  EXPECT_EQ(config.dds.frame_id, "eye");
   EXPECT_EQ(config.models, (std::vector<std::filesystem::path>{folder / "a.wpm", "/b"}));
   EXPECT_EQ(config.search_for, (std::vector<std::uint32_t>{3, 1}));
 }
@@ -87,7 +87,8 @@ TEST_F(ConfigTest, TheExampleIsValid) {
 TEST_F(ConfigTest, RefusalsNameLineKeyAndRemedy) {
   EXPECT_EQ(Refusal("a: 1\n"), ":1: a: unknown key; known here: camera, dds, models, search_for");
   EXPECT_EQ(Refusal("dds:\n  domain: 5\n  domian: 6\n"),
-            ":3: dds.domian: unknown key; known here: domain, frame_id, loopback");
+            ":3: dds.domian: unknown key; known here: domain, frame_id, loopback, pool_kib, security, stamp, "
+            "topics");
   EXPECT_EQ(Refusal("dds:\n  domain: 231\n"), ":2: dds.domain: '231' is not a whole number from 0 to 230");
   EXPECT_EQ(Refusal("dds:\n  domain: -1\n"), ":2: dds.domain: '-1' is not a whole number from 0 to 230");
   EXPECT_EQ(Refusal("dds:\n  domain: 1x\n"), ":2: dds.domain: '1x' is not a whole number from 0 to 230");
