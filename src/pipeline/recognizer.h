@@ -125,6 +125,9 @@ class Recognizer {
   // The corresponding line set behind detection i: which image line lies on which model edge.
   [[nodiscard]] std::span<const SetMember> line_set(std::size_t i) const;
   [[nodiscard]] const PreparedModel& prepared_model(std::size_t i) const { return models_[i]; }
+  // Of the model at hand, during StageDone(kHypotheses): coarse poses and promoted sets, best first.
+  [[nodiscard]] std::span<const Hypothesis> hypotheses() const { return hypotheses_.items(); }
+  [[nodiscard]] std::span<const CorrespondingSet> sets() const { return {sets_.begin(), sets_.end()}; }
   // Verified candidates of all models, by falling score: what was nearly reported, and why not.
   [[nodiscard]] std::span<const Candidate> candidates() const;
 

@@ -15,6 +15,7 @@
 #include "tools/evaluation/evaluation_json.h"
 #include "tools/evaluation/results_csv.h"
 #include "tools/evaluation/summary.h"
+#include "tools/evaluation/trace_log.h"
 
 namespace wirepose::cli {
 namespace {
@@ -27,6 +28,7 @@ struct EvalArguments {
   fs::path json;        // empty: none
   fs::path overlay;     // folder; empty: none
   fs::path candidates;  // empty: none
+  fs::path trace;       // empty: none
 };
 
 // A long run must not fail at its last step.
@@ -74,13 +76,21 @@ void RunEval(const EvalArguments& arguments) {
     CheckWritable(arguments.candidates);
     log = std::make_unique<evaluation::CandidateLog>(arguments.candidates);
   }
+  std::unique_ptr<evaluation::TraceLog> trace;
+  if (!arguments.trace.empty()) {
+    CheckWritable(arguments.trace);
+    trace = std::make_unique<evaluation::TraceLog>(arguments.trace);
+  }
   const auto observer = [&](const evaluation::FrameView& view) -> Result<void, std::string> {
     ShowProgress(view);
     if (!arguments.overlay.empty()) DrawFrame(view, arguments);
     if (log) log->Add(view);
+    if (trace) trace->Add(view);
     return {};
   };
-  const auto evaluation = evaluation::Evaluate(arguments.options, observer);
+  evaluation::EvaluationOptions options = arguments.options;
+  options.trace = !arguments.trace.empty();
+  const auto evaluation = evaluation::Evaluate(options, observer);
   if (!evaluation) throw WorkFailed(evaluation.error());
   const auto written = evaluation::WriteResults(arguments.out, evaluation->estimates);
   if (!written) throw WorkFailed(written.error());
@@ -103,6 +113,8 @@ void AddEvalCommand(CLI::App& app) {
   eval->add_option("--overlay", arguments->overlay, "Folder for a picture of every frame");
   eval->add_option("--candidates", arguments->candidates,
                    "All verified candidates with their evidence (CSV), to fit the score to");
+  eval->add_option("--trace", arguments->trace,
+                   "The fate of every true instance, stage by stage, and why it was missed (CSV)");
   eval->add_option("--limit", arguments->options.frame_limit, "Stop after so many frames (0: all)")
       ->check([](const std::string& text) {
         return text.starts_with('-') ? std::string("must not be negative") : std::string();

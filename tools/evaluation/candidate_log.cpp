@@ -1,29 +1,10 @@
 #include "tools/evaluation/candidate_log.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
+#include "tools/evaluation/vertex_error.h"
+
 namespace wirepose::evaluation {
-namespace {
-
-// Largest vertex distance, for the symmetry that makes it smallest, in diameters.
-double RelativeError(const PreparedModel& model, const Pose& found, const Pose& truth) {
-  double best = 9;
-  for (const Pose& symmetry : model.symmetries) {
-    const Pose T = truth * symmetry;
-    double worst = 0;
-    for (std::size_t v = 0; v < model.view.vertices.size(); ++v) {
-      const Vector3d p = model.view.VertexPosition(v).cast<double>();
-      worst = std::max(worst, (found * p - T * p).norm());
-    }
-    best = std::min(best, worst / static_cast<double>(model.view.diameter_m));
-  }
-  return best;
-}
-
-}  // namespace
-
 CandidateLog::CandidateLog(const std::filesystem::path& file) : out_(file) {
   out_ << "scene_id,im_id,obj_id,error_d,visib_fract,score,edges,contrast,faces,overrun,support,inside,visible_px,"
           "supported_edges,supported_faces,rms_px,inliers\n";
@@ -36,7 +17,7 @@ void CandidateLog::Add(const FrameView& view) {
     double error = 9, visible = 0;
     for (const dataset::TrueInstance& truth : view.entry.gt) {
       if (static_cast<std::uint32_t>(truth.obj_id) != model.view.id) continue;
-      const double here = RelativeError(model, T_raw_model, truth.T_camera_model);
+      const double here = RelativeVertexError(model, T_raw_model, truth.T_camera_model);
       if (here >= error) continue;
       error = here;
       visible = truth.visib_fract;
