@@ -1,6 +1,5 @@
 // What really goes over DDS: the bytes of the ROS 2 message, and each topic's way from the
 // publisher to a reader.
-#include <dds/ddsi/ddsi_serdata.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -10,6 +9,7 @@
 #include "../dds_domain.h"
 #include "cdr_reader.h"
 #include "publish/publisher.h"
+#include "raw_bytes.h"
 #include "reports_for_test.h"
 
 namespace wirepose {
@@ -64,16 +64,11 @@ class WireTest : public ::testing::Test {
   }
 
   static std::vector<unsigned char> TakeBytes(dds_entity_t reader) {
-    ddsi_serdata* data = nullptr;
-    dds_sample_info_t info{};
-    WaitUntil([&] { return dds_takecdr(reader, &data, 1, &info, DDS_ANY_STATE) == 1; });
-    const std::uint32_t size = ddsi_serdata_size(data);
-    ddsrt_iovec_t io{};
-    ddsi_serdata* const reference = ddsi_serdata_to_ser_ref(data, 0, size, &io);
-    const auto* const first = static_cast<const unsigned char*>(io.iov_base);
-    std::vector<unsigned char> bytes(first, first + io.iov_len);
-    ddsi_serdata_to_ser_unref(reference, &io);
-    ddsi_serdata_unref(data);
+    std::vector<unsigned char> bytes;
+    WaitUntil([&] {
+      bytes = test::TakeRawBytes(reader);
+      return !bytes.empty();
+    });
     return bytes;
   }
 
