@@ -64,6 +64,10 @@ Qos MakeQos(TopicId id, const TopicSettings& topic, bool writer) {
                               DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   if (topic.deadline.count() > 0) dds_qset_deadline(qos.get(), DDS_MSECS(topic.deadline.count()));
   dds_qset_writer_data_lifecycle(qos.get(), false);  // as ROS 2's writers
+  if (const char* const hash = Spec(id).ros_hash; hash != nullptr) {
+    const std::string user_data = std::string("typehash=").append(hash).append(";");
+    dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
+  }
   return qos;
 }
 
@@ -78,13 +82,16 @@ Result<dds_entity_t, std::string> Created(dds_entity_t endpoint, const char* kin
 
 const TopicSpec& Spec(TopicId topic) {
   static const TopicSpec specs[kTopicCount] = {
-      {"detections", "rt/wirepose/detections", &vision_msgs_msg_dds__Detection3DArray__desc, 4, 4, false},
-      {"recognition", "wirepose/recognition", &wirepose_Recognition_desc, 4, 4, false},
-      {"health", "wirepose/health", &wirepose_Health_desc, 1, 1, true},
-      {"markers", "rt/wirepose/markers", &visualization_msgs_msg_dds__MarkerArray__desc, 1, 1, false},
-      {"diagnostics", "rt/diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, 1, 1, false},
-      {"command", "wirepose/command", &wirepose_Command_desc, 16, 16, false},
-      {"command_status", "wirepose/command_status", &wirepose_CommandStatus_desc, 16, 16, false},
+      {"detections", "rt/wirepose/detections", &vision_msgs_msg_dds__Detection3DArray__desc, 4, 4, false,
+       "RIHS01_793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018"},
+      {"recognition", "wirepose/recognition", &wirepose_Recognition_desc, 4, 4, false, nullptr},
+      {"health", "wirepose/health", &wirepose_Health_desc, 1, 1, true, nullptr},
+      {"markers", "rt/wirepose/markers", &visualization_msgs_msg_dds__MarkerArray__desc, 1, 1, false,
+       "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf"},
+      {"diagnostics", "rt/diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, 1, 1, false,
+       "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"},
+      {"command", "wirepose/command", &wirepose_Command_desc, 16, 16, false, nullptr},
+      {"command_status", "wirepose/command_status", &wirepose_CommandStatus_desc, 16, 16, false, nullptr},
   };
   return specs[static_cast<std::size_t>(topic)];
 }

