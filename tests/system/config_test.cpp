@@ -107,6 +107,45 @@ TEST_F(ConfigTest, RefusalsNameLineKeyAndRemedy) {
   EXPECT_NE(Refusal("dds: { frame_id: " + std::string(64, 'x') + " }").find("longer than 63"), std::string::npos);
 }
 
+TEST_F(ConfigTest, TopicsPoolAndStamp) {
+  const Config config = Load(R"(
+dds:
+  stamp: capture
+  pool_kib: 4096
+  topics:
+    detections: { name: rt/robot1/objects, reliable: false, depth: 2, deadline_ms: 100 }
+)");
+  EXPECT_EQ(config.dds.stamp, StampSource::kCapture);
+  EXPECT_EQ(config.dds.pool_bytes, 4096U << 10);
+  const TopicSettings& detections = config.dds.bus.topics[static_cast<std::size_t>(TopicId::kDetections)];
+  EXPECT_EQ(detections.name, "rt/robot1/objects");
+  EXPECT_FALSE(detections.reliable);
+  EXPECT_EQ(detections.depth, 2);
+  EXPECT_EQ(detections.deadline.count(), 100);
+  EXPECT_EQ(config.dds.bus.topics[static_cast<std::size_t>(TopicId::kHealth)].name, "wirepose/health");
+  EXPECT_FALSE(config.dds.bus.security);
+
+  EXPECT_EQ(Refusal("dds: { stamp: now }\n"), ":1: dds.stamp: neither system nor capture");
+  EXPECT_EQ(Refusal("dds: { topics: { health: { depth: 2 } } }\n"),
+            ":1: dds.topics.health.depth: '2' is not a whole number from 1 to 1");
+  EXPECT_NE(Refusal("dds: { topics: { health: { name: /a b } } }\n").find("not a topic name"), std::string::npos);
+  EXPECT_NE(Refusal("dds: { topics: { health: { name: wirepose/recognition } } }\n").find("two topics"),
+            std::string::npos);
+  EXPECT_NE(Refusal("dds: { topics: { weather: {} } }\n").find("dds.topics.weather: unknown key"), std::string::npos);
+}
+
+TEST_F(ConfigTest, SecurityNeedsAllItsFiles) {
+  const std::string file = file_.string();
+  EXPECT_NE(Refusal("dds:\n  security: { governance: nowhere.p7s }\n").find(":2: dds.security.governance: no such file"),
+            std::string::npos);
+  EXPECT_NE(Refusal("dds:\n  security: { governance: " + file + " }\n").find("needs all six files"), std::string::npos);
+  const Config config = Load("dds:\n  security: { identity_ca: " + file + ", certificate: " + file + ", private_key: " +
+                             file + ", permissions_ca: " + file + ", governance: " + file + ", permissions: " + file + " }\n");
+  ASSERT_TRUE(config.dds.bus.security);
+  EXPECT_EQ(config.dds.bus.security->permissions, file);
+  EXPECT_EQ(config.dds.pool_bytes, kDefaultSecuredDdsPoolBytes);
+}
+
 TEST_F(ConfigTest, WhatIsNotYamlIsRefusedWithItsLine) {
   EXPECT_EQ(Refusal("dds:\n  domain: [1, 2\nmodels: }\n").rfind(":", 0), 0u);
   EXPECT_NE(Refusal("dds: *nowhere\n").find("not YAML"), std::string::npos);
