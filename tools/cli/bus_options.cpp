@@ -1,8 +1,26 @@
 #include "bus_options.h"
 
+#include <filesystem>
+
 #include "command.h"
 
 namespace wirepose::cli {
+namespace {
+
+SecurityFiles FilesIn(const std::string& folder) {
+  const auto file = [&](const char* name) {
+    const std::filesystem::path path = std::filesystem::path(folder) / name;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) {
+      throw UsageError("--security " + folder + ": no " + name + " there; make the folder with scripts/make-security");
+    }
+    return path.string();
+  };
+  return {file("identity_ca.pem"),    file("certificate.pem"), file("key.pem"),
+          file("permissions_ca.pem"), file("governance.p7s"),  file("permissions.p7s")};
+}
+
+}  // namespace
 
 void AddBusOptions(CLI::App& command, BusOptions& options) {
   command.add_option("--domain", options.domain, "DDS domain")
@@ -14,6 +32,7 @@ void AddBusOptions(CLI::App& command, BusOptions& options) {
                      "detections=rt/robot1/detections; may be repeated");
   command.add_flag("--best-effort", options.best_effort,
                    "ask for best-effort delivery: needed where dds.topics says reliable: false");
+  command.add_option("--security", options.security, "a participant's folder, as scripts/make-security makes it");
 }
 
 BusConfig BusConfigOf(const BusOptions& options) {
@@ -31,6 +50,7 @@ BusConfig BusConfigOf(const BusOptions& options) {
     }
     if (!known) throw UsageError("--name " + text + ": not KEY=NAME with the key of a topic; see dds.topics");
   }
+  if (!options.security.empty()) config.security = FilesIn(options.security);
   return config;
 }
 

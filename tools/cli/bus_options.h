@@ -15,12 +15,13 @@ struct BusOptions {
   bool loopback = false;
   bool best_effort = false;
   std::vector<std::string> names;  // KEY=NAME
+  std::string security;            // a participant's folder; empty: none
 };
 
-// --domain, --loopback, --name, --best-effort.
+// --domain, --loopback, --name, --best-effort, --security.
 void AddBusOptions(CLI::App& command, BusOptions& options);
 
-// Throws UsageError when a name is given for no topic.
+// Throws UsageError when a name is given for no topic or the folder of --security lacks a file.
 BusConfig BusConfigOf(const BusOptions& options);
 
 // Throws WorkFailed.
