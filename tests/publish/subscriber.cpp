@@ -1,5 +1,6 @@
-// A subscriber as a process of its own, for tests: subscriber DOMAIN TOPIC... Prints "data" at the first sample and, once
-// it gets SIGTERM, one line of JSON for each topic.
+// A subscriber as a process of its own, for tests: subscriber DOMAIN TOPIC... Prints "data" at the first sample and
+// "count N" every 100 ms in which samples came; once it gets SIGTERM, one line of JSON for each topic. Joins this machine
+// only, or with WIREPOSE_TEST_NETWORK set what CYCLONEDDS_URI says.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -118,6 +119,8 @@ int Main(int argc, char** argv) {
     }
   }
   bool any = false;
+  std::uint64_t told = 0;
+  std::int64_t told_ns = 0;
   while (g_stop == 0) {
     dds_waitset_wait(waitset, nullptr, 0, DDS_MSECS(50));
     for (const auto& listener : listeners) {
@@ -127,6 +130,14 @@ int Main(int argc, char** argv) {
         std::puts("data");
         std::fflush(stdout);
       }
+    }
+    std::uint64_t count = 0;
+    for (const auto& listener : listeners) count += listener->tally.samples;
+    if (count != told && Now_ns() - told_ns > 100'000'000) {
+      told = count;
+      told_ns = Now_ns();
+      std::printf("count %llu\n", static_cast<unsigned long long>(count));
+      std::fflush(stdout);
     }
   }
   for (const auto& listener : listeners) listener->tally.Print();
