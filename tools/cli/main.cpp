@@ -6,6 +6,7 @@
 #include "compare_command.h"
 #include "eval_command.h"
 #include "model_command.h"
+#include "record_command.h"
 #include "send_command.h"
 #include "sim_command.h"
 #include "watch_command.h"
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
   wirepose::cli::AddCompareCommand(app);
   wirepose::cli::AddEvalCommand(app);
   wirepose::cli::AddModelCommand(app);
+  wirepose::cli::AddRecordCommand(app);
   wirepose::cli::AddSendCommand(app);
   wirepose::cli::AddSimCommand(app);
   wirepose::cli::AddWatchCommand(app);
