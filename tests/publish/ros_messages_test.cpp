@@ -182,6 +182,24 @@ std::uint32_t SerializedBytes(TopicId topic, const void* message) {
   return bytes;
 }
 
+// For docs/dds.md: unambiguous objects, names of usual length.
+TEST(MessageBounds, UsualSizes) {
+  std::mt19937 random(8);
+  const auto detections = std::make_unique<DetectionsMessage>();
+  const auto recognition = std::make_unique<RecognitionMessage>();
+  for (const std::size_t objects : {std::size_t{0}, std::size_t{2}, kMaxDetections}) {
+    FrameReport frame = test::RandomReport(random, objects);
+    for (Detection& detection : frame.result.detections) detection.modes.clear();
+    FillMessage(frame, "wirepose_left_optical", *detections);
+    FillMessage(frame, "wirepose_left_optical", *recognition);
+    const std::uint32_t ros_bytes = SerializedBytes(TopicId::kDetections, &detections->value);
+    const std::uint32_t native_bytes = SerializedBytes(TopicId::kRecognition, &recognition->value);
+    std::printf("%zu objects: detections %u bytes, recognition %u bytes\n", objects, ros_bytes, native_bytes);
+    EXPECT_LT(ros_bytes, 64 + 720 * objects);
+    EXPECT_LT(native_bytes, 512 + 480 * objects);
+  }
+}
+
 // The slots of the writers are as large as the largest message, and not much larger.
 TEST(MessageBounds, FullMessagesFitTheirSlots) {
   std::mt19937 random(8);
