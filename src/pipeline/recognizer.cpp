@@ -136,6 +136,7 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
 
   NormalizeLocally(View(left_rectified_), left_normalized_);
   NormalizeLocally(View(right_rectified_), right_normalized_);
+  ComputeDisparityMap(params_.disparity, width, height, left_normalized_, right_normalized_, disparity_scratch_, disparity_);
   MatchLines(params_.stereo, {camera(), left_normalized_, right_normalized_, right_smooth_, rectification_.right},
              left_segments_, stereo_scratch_, lines_);
   timer.Done(Stage::kStereoLines);
@@ -187,7 +188,7 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   timer.Done(Stage::kRefine);
 
   const VerifyInput input{camera(), left_edges_, right_edges_, left_normalized_, right_normalized_,
-                          left_smooth_, right_smooth_};
+                          left_smooth_, right_smooth_, disparity_};
   for (Candidate& candidate : refined) {
     GatherEvidence(params_.verify, input, model, candidate.pose.T_camera_model, verify_scratch_, candidate.evidence);
     candidate.score = ScoreOf(params_.select.score, candidate.evidence);
@@ -196,8 +197,16 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   timer.Done(Stage::kVerify);
 }
 
+// The last of the adjustment, with more samples and iterations; what it cannot improve stays.
+void Recognizer::Polish(Candidate& candidate) {
+  RefinedPose polished;
+  RefinePose(params_.polish, {camera(), left_smooth_, right_smooth_}, models_[candidate.model], candidate.pose.T_camera_model,
+             refine_scratch_, polished);
+  if (polished.ok) candidate.pose = polished;
+}
+
 void Recognizer::Report(RecognitionResult& result) {
-  const auto& candidates = candidates_.Sorted();
+  auto& candidates = candidates_.Sorted();
   std::uint32_t dropped = 0;
   SelectDetections(params_.select, camera(), left_edges_, {models_.begin(), models_.end()}, {candidates.begin(), candidates.end()},
                    verify_scratch_, claims_, accepted_, dropped);
@@ -207,7 +216,8 @@ void Recognizer::Report(RecognitionResult& result) {
   turn.topLeftCorner<3, 3>() = T_raw_rectified.R;
   turn.bottomRightCorner<3, 3>() = T_raw_rectified.R;
   for (const std::uint16_t i : accepted_) {
-    const Candidate& candidate = candidates[i];
+    Candidate& candidate = candidates[i];
+    Polish(candidate);
     Detection detection;
     detection.model_id = models_[candidate.model].view.id;
     detection.T_camera_model = T_raw_rectified * candidate.pose.T_camera_model;

@@ -12,6 +12,7 @@
 #include "model/prepared_model.h"
 #include "pipeline/recognition.h"
 #include "stages/correspondences.h"
+#include "stages/disparity_map.h"
 #include "stages/edge_image.h"
 #include "stages/edge_map.h"
 #include "stages/hypotheses.h"
@@ -58,11 +59,13 @@ struct RecognizerParams {
   EdgeImageParams edges;
   SegmentParams segments;
   StereoLineParams stereo;
+  DisparityMapParams disparity;
   LineSetParams line_sets;
   CorrespondenceParams correspondences;
   HypothesisParams hypotheses;
   PromotionParams promotion;
-  RefineParams refine;
+  RefineParams refine{.iterations = 4, .samples = {.step_px = 14}};  // of candidates: near enough to be judged
+  RefineParams polish;                                               // of what is reported
   VerifyParams verify;
   SelectParams select;
 };
@@ -118,6 +121,7 @@ class Recognizer {
   // Intermediates of the last Process, for overlays and tests. Rectified left frame; valid until the next call.
   [[nodiscard]] ImageView left_rectified() const { return View(left_rectified_); }
   [[nodiscard]] ImageView right_rectified() const { return View(right_rectified_); }
+  [[nodiscard]] const DisparityMap& disparity_map() const { return disparity_; }
   [[nodiscard]] std::span<const Segment2> left_segments() const { return {left_segments_.items.begin(), left_segments_.items.end()}; }
   [[nodiscard]] std::span<const Segment2> right_segments() const { return {right_segments_.items.begin(), right_segments_.items.end()}; }
   [[nodiscard]] std::span<const Line3> lines() const { return {lines_.begin(), lines_.end()}; }
@@ -141,6 +145,7 @@ class Recognizer {
   void KeepSegmentsInRegion();
   void FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics);
   void MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result);
+  void Polish(Candidate& candidate);
   void Report(RecognitionResult& result);
 
   RecognizerParams params_;
@@ -159,6 +164,7 @@ class Recognizer {
   EdgeImage edges_;  // of one eye at a time
   EdgeMap left_edges_, right_edges_;
   Segments left_segments_, right_segments_;
+  DisparityMap disparity_;
   Lines3 lines_;
   ImageLineSets line_sets_;
   // Per model.
@@ -171,6 +177,7 @@ class Recognizer {
 
   SegmentScratch segment_scratch_;
   StereoScratch stereo_scratch_;
+  DisparityScratch disparity_scratch_;
   RefineScratch refine_scratch_;
   VerifyScratch verify_scratch_;
   ClaimMap claims_;
