@@ -70,6 +70,13 @@ struct RecognizerParams {
   SelectParams select;
 };
 
+// A rectangle of the raw left image; without area it stands for the whole image.
+struct ImageRegion {
+  std::uint16_t x = 0, y = 0, width = 0, height = 0;  // px
+  [[nodiscard]] bool Whole() const { return width == 0 || height == 0; }
+  bool operator==(const ImageRegion&) const = default;
+};
+
 // Tells the observer, if any.
 class StageTimer {
  public:
@@ -93,6 +100,15 @@ class Recognizer {
   RecognizerError AddModel(const ModelView& model);
   void ClearModels();
   [[nodiscard]] std::span<const ModelView> models() const { return {views_.begin(), views_.end()}; }
+
+  // Restricts the following frames to the models whose bit is set, by their order of addition. AddModel sets the new
+  // model's bit.
+  void SearchFor(std::uint32_t model_bits) { searched_ = model_bits; }
+  [[nodiscard]] std::uint32_t searched() const { return searched_; }
+  // Restricts the following frames to objects that show at least one line in the region: only left segments whose middle
+  // lies in it are used for matching. Evidence for and against a pose comes from the whole image as before.
+  void SetRegion(const ImageRegion& region) { region_ = region; }
+  [[nodiscard]] const ImageRegion& region() const { return region_; }
 
   // Recognizes every added model in a raw pair of the calibrated size. `observer` may be null. Bounded time: every loop
   // has a compile-time bound; a search that stops at its bound sets `budget_hit`.
@@ -128,6 +144,8 @@ class Recognizer {
   [[nodiscard]] ImageView View(const ImagePlane& plane) const {
     return {plane.data(), camera().width, camera().height, kMaxImageWidth};
   }
+  [[nodiscard]] bool Searched(std::size_t m) const { return ((searched_ >> m) & 1U) != 0; }
+  void KeepSegmentsInRegion();
   void FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics);
   void MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result);
   void Polish(Candidate& candidate);
@@ -138,6 +156,9 @@ class Recognizer {
   Rectification rectification_;
   FixedVector<ModelView, kMaxModels> views_;
   FixedVector<PreparedModel, kMaxModels> models_;  // of the same models, in the same order
+  std::uint32_t searched_ = 0;                     // bit m: models_[m] takes part
+  static_assert(kMaxModels <= 32);
+  ImageRegion region_;
 
   // Per frame, in the order of the flow.
   ImagePlane left_rectified_, right_rectified_;
