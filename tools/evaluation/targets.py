@@ -164,7 +164,8 @@ def table(measured, peers, absent):
             values = measured.get(data)
             ours = shown(target, values) if values else "–"
             said = verdict(target, values) if values else absent.get(data, "not measured")
-            theirs = shown(target, peers[data]) if data in peers else "–"
+            # A peer's score claims no probability and its pose no covariance.
+            theirs = shown(target, peers[data]) if data in peers and target not in HONEST else "–"
             rows.append([data, target.measure, *bounds(target), ours, said, theirs])
     return rows
 

@@ -46,7 +46,7 @@ function ladder(instance) {
 function evidenceTable(evidence) {
   if (!evidence) return null;
   return el('dl', { class: 'evidence' }, Object.entries(evidence).map(([name, value]) =>
-    el('div', {}, el('dt', {}, name), el('dd', {}, Number.isInteger(value) ? String(value) : fixed(value, Math.abs(value) < 10 ? 2 : 1)))));
+    el('div', {}, el('dt', {}, name.replace('_', ' ')), el('dd', {}, Number.isInteger(value) ? String(value) : fixed(value, Math.abs(value) < 10 ? 2 : 1)))));
 }
 
 const badge = (cause) => el('span', { class: 'badge', style: `--hue:${hueOf(cause)}` }, cause);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/evaluation/evidence_terms.h"
 #include "tools/evaluation/vertex_error.h"
 #include "tools/overlay/visible_edges.h"
 
@@ -86,18 +87,9 @@ Json DrawPose(const RectifiedCamera& camera, const ModelView& model, const Pose&
 }
 
 Json EvidenceToJson(const Candidate& candidate) {
-  const Evidence& e = candidate.evidence;
-  return {{"edges", e.edges},
-          {"contrast", e.contrast},
-          {"faces", e.faces},
-          {"overrun", e.overrun},
-          {"support", e.support},
-          {"inside", e.inside},
-          {"visible px", e.visible_px},
-          {"supported edges", e.supported_edges},
-          {"supported faces", e.supported_faces},
-          {"rms px", candidate.pose.rms_px},
-          {"inliers", candidate.pose.inliers}};
+  Json json = Json::object();
+  for (const EvidenceTerm& term : EvidenceTerms(candidate)) json[term.name] = term.value;
+  return json;
 }
 
 const PreparedModel* FindPrepared(const Recognizer& recognizer, std::uint32_t id) {
