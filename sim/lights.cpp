@@ -1,6 +1,8 @@
 // Light styles of a room.
 #include "sim/room.h"
 
+#include <vector>
+
 namespace wirepose::sim {
 namespace {
 
@@ -28,8 +30,29 @@ AreaLight Lamp(Random& random) {
   return Above({x, DrawFloat(random, {-1.2, -0.3}), DrawFloat(random, {0.8, 1.4})}, 0.04F, 0.04F, 2.5F);
 }
 
-AreaLight UnderCabinet(const Room& room) {
-  return Above({static_cast<float>(room.worktop.centre.x()), static_cast<float>(room.wall_y) - 0.2F, 0.45F}, 0.6F, 0.015F, 0.25F);
+// The whole ceiling shines. In pieces: the renderer chooses among lights by their middles, which
+// serves lights that are short against their distance.
+std::vector<AreaLight> Overcast(const Room& room, float intensity) {
+  std::vector<AreaLight> pieces;
+  for (const float x : {-1.4F, 0.0F, 1.4F}) {
+    for (const float y : {-2.4F, -0.9F}) {
+      pieces.push_back(Above({x, y, static_cast<float>(room.ceiling_z) - 0.02F}, 0.7F, 0.75F, intensity / 6));
+    }
+  }
+  return pieces;
+}
+
+// A strip below the wall cabinets, in pieces for the same reason.
+std::vector<AreaLight> UnderCabinet(const Room& room, float intensity) {
+  constexpr int kPieces = 6;
+  constexpr float kHalf = 0.1F;  // m
+  const auto middle = static_cast<float>(room.worktop.centre.x()), y = static_cast<float>(room.wall_y) - 0.25F;
+  std::vector<AreaLight> pieces;
+  for (int i = 0; i < kPieces; ++i) {
+    const float x = middle + kHalf * static_cast<float>(2 * i + 1 - kPieces);
+    pieces.push_back(Above({x, y, 0.45F}, kHalf, 0.015F, intensity / kPieces));
+  }
+  return pieces;
 }
 
 }  // namespace
@@ -54,11 +77,12 @@ void AddLights(Random& random, const LightSpec& spec, const Room& room, Scene& s
       ambient(0.16F, 0.12F);
       break;
     case LightStyle::kFlat:
-      scene.lights = {Above({0, -1.5F, static_cast<float>(room.ceiling_z) - 0.02F}, 2.2F, 1.6F, 2)};
+      scene.lights = Overcast(room, 2);
       ambient(0.5F, 0.45F);
       break;
     case LightStyle::kUnderCabinet:
-      scene.lights = {UnderCabinet(room), Ceiling(random, room, 1.5F)};
+      scene.lights = UnderCabinet(room, 0.3F);
+      scene.lights.push_back(Ceiling(random, room, 1.8F));
       ambient(0.25F, 0.2F);
       break;
     case LightStyle::kMixed:

@@ -15,15 +15,14 @@ constexpr std::size_t kMaxLights = 16;
 Vector3 Start(const SurfacePoint& surface) { return surface.place + kShadowOffset * surface.normal; }
 
 // What a light would give if all of it were in its middle: for choosing among lights only.
-float Importance(const AreaLight& light, const SurfacePoint& surface) {
+float Importance(const AreaLight& light, const Vector3& shine, const SurfacePoint& surface) {
   const Vector3 to = light.centre - surface.place;
   const float squared = to.squaredNorm();
-  const Vector3 shine = light.half_u.cross(light.half_v).normalized();
-  const float length = std::sqrt(squared);
+  const float per_length = 1 / std::sqrt(squared);
   // A light whose middle is below the horizon may still shine with a part of it.
-  const float here = std::max(surface.normal.dot(to) / length, 0.1F);
-  const float there = std::max(-shine.dot(to) / length, 0.02F);
-  return light.intensity * here * there / squared;
+  const float here = std::max(surface.normal.dot(to) * per_length, 0.1F);
+  const float there = std::max(-shine.dot(to) * per_length, 0.02F);
+  return light.intensity * here * there * per_length * per_length;
 }
 
 // A point of the unit ball, from one hash.
@@ -42,6 +41,7 @@ Shader::Shader(const Scene& scene, const RayScene& rays, const std::vector<Bound
   for (const Instance& instance : scene.instances) {
     frames_.push_back({instance.T_world_object.R.cast<float>().transpose(), instance.T_world_object.t.cast<float>()});
   }
+  for (const AreaLight& light : scene.lights) shine_.push_back(light.half_u.cross(light.half_v).normalized());
 }
 
 SurfacePoint Shader::At(int instance, const Vector3& place, const Vector3& normal, const Vector3& direction) const {
@@ -68,7 +68,7 @@ LightSample Shader::SampleLight(const SurfacePoint& surface, float pick, float a
   const std::size_t count = std::min(scene_.lights.size(), kMaxLights);
   std::array<float, kMaxLights> weights{};
   float sum = 0;
-  for (std::size_t i = 0; i < count; ++i) sum += weights[i] = Importance(scene_.lights[i], surface);
+  for (std::size_t i = 0; i < count; ++i) sum += weights[i] = Importance(scene_.lights[i], shine_[i], surface);
   if (!(sum > 0)) return {};
   std::size_t chosen = 0;
   float rest = pick * sum;
@@ -79,8 +79,7 @@ LightSample Shader::SampleLight(const SurfacePoint& surface, float pick, float a
   LightSample sample;
   sample.start = Start(surface);
   sample.to_light = target - sample.start;
-  const Vector3 shine = light.half_u.cross(light.half_v).normalized();
-  const float here = surface.normal.dot(sample.to_light), there = -shine.dot(sample.to_light);
+  const float here = surface.normal.dot(sample.to_light), there = -shine_[chosen].dot(sample.to_light);
   if (here <= 0 || there <= 0) return {};
   const float squared = sample.to_light.squaredNorm();
   sample.radiance = light.intensity * here * there / (squared * squared) * sum / weights[chosen];
