@@ -187,6 +187,15 @@ TEST_F(ReportTest, HoldsPicturesLinesAndCurves) {
   EXPECT_LT(page_.size(), 3U * 600'000) << "16 frames must stay below 10 MB";
 }
 
+// Lowering the threshold only adds: what was reported stays as it was.
+TEST_F(ReportTest, ContinuesTheCurveBelowWhatWasReported) {
+  const Json& curve = data_.at("measures").at("score_curve");
+  const Json& continued = data_.at("measures").at("continued_curve");
+  ASSERT_GT(continued.size(), curve.size()) << "the frames have candidates that were not reported";
+  for (const Json& point : curve) EXPECT_THAT(continued, ::testing::Contains(point));
+  EXPECT_GE(continued.back().at("recall"), curve.back().at("recall"));
+}
+
 TEST_F(ReportTest, RefusesAFileThatCannotBeWritten) {
   const auto run =
       RunIn(folder_->path(), fmt::format("'{}' eval set --out r2.csv --report no/where.html", WIREPOSE_PROGRAM));

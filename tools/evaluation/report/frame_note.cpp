@@ -16,7 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kRightD = 0.1;  // as a hit of the metrics
+constexpr double kRightD = 0.1;      // as a hit of the metrics
+constexpr double kSamePlaceD = 0.3;  // poses of one model nearer than this are one report
 
 double Tenth(double px) { return std::round(px * 10) / 10; }
 
@@ -187,7 +188,32 @@ Result<FrameNote, std::string> TakeNote(const FrameView& view, double min_score)
     note.detections.push_back(NoteDetection(view, *model, d));
   }
   for (std::size_t i = 0; i < view.entry.gt.size(); ++i) note.instances.push_back(NoteInstance(view, i));
+  note.unreported = UnreportedCandidates(view);
   return note;
+}
+
+std::vector<Estimate> UnreportedCandidates(const FrameView& view) {
+  struct Taken {
+    std::uint32_t model_id;
+    Pose T_raw_model;
+  };
+  std::vector<Taken> taken;
+  for (const Detection& d : view.result.detections) taken.push_back({d.model_id, d.T_camera_model});
+  std::vector<Estimate> unreported;
+  for (const Candidate& c : view.recognizer.candidates()) {
+    const PreparedModel& model = view.recognizer.prepared_model(c.model);
+    Detection d;
+    d.model_id = model.view.id;
+    d.score = c.score;
+    d.T_camera_model = view.recognizer.T_rectified_raw().Inverse() * c.pose.T_camera_model;
+    const bool is_taken = std::ranges::any_of(taken, [&](const Taken& t) {
+      return t.model_id == d.model_id && RelativeVertexError(model, d.T_camera_model, t.T_raw_model) < kSamePlaceD;
+    });
+    if (is_taken) continue;
+    taken.push_back({d.model_id, d.T_camera_model});
+    unreported.push_back(ToEstimate(d, view.entry, -1));
+  }
+  return unreported;
 }
 
 std::vector<ScoredDetection> ScoredCandidates(const FrameView& view, double min_visible_fraction) {
