@@ -203,6 +203,22 @@ TEST_F(ReportTest, RefusesAFileThatCannotBeWritten) {
   EXPECT_THAT(run.err, HasSubstr("no/where.html"));
 }
 
+TEST_F(ReportTest, ScriptJudgesASuite) {
+  fs::create_directory(folder_->path() / "suite");
+  fs::create_directory_symlink(folder_->path() / "set", folder_->path() / "suite/recorded");
+  const auto run = RunIn(
+      folder_->path(), fmt::format("python3 '{}' --bin '{}' --suite suite --data nowhere --out ev --no-peer --no-docs",
+                                   WIREPOSE_EVALUATE, fs::path(WIREPOSE_PROGRAM).parent_path().string()));
+  ASSERT_EQ(run.status, 0) << run.out << run.err;
+  // The refrigerator stands beyond the range that the suite's targets speak of.
+  const Json& total = measures_.at("total");
+  EXPECT_THAT(run.out, ::testing::ContainsRegex(fmt::format("simulated suite +recall .*\\({} of {}\\)",
+                                                            total.at("true_positives").get<int>(),
+                                                            total.at("instances").get<int>() - 1)));
+  EXPECT_THAT(run.out, ::testing::ContainsRegex("kitchen-sample +recall .*no data here"));
+  EXPECT_TRUE(fs::exists(folder_->path() / "ev/suite-recorded.html"));
+}
+
 TEST_F(ReportTest, WorksInABrowser) {
   constexpr int kNoBrowser = 77;
   const auto run = RunIn(folder_->path(), fmt::format("python3 '{}' page.html", WIREPOSE_PAGE_TEST));
