@@ -87,30 +87,30 @@ Views RenderViews(const StereoRig& rig) {
   return views;
 }
 
-struct Calibrated {
+// Fails where a parameter is more than three standard errors off.
+void CheckEye(const Views& views, int eye, const CameraIntrinsics& truth, const cv::Size& size) {
   cv::Mat K = cv::Mat::eye(3, 3, CV_64F), D = cv::Mat::zeros(1, 5, CV_64F);
   std::vector<cv::Mat> rotations, translations;
-  double rms = 0;
-};
-
-// Fails where a parameter is more than three standard errors off.
-Calibrated CheckEye(const Views& views, int eye, const CameraIntrinsics& truth, const cv::Size& size) {
-  Calibrated c;
   cv::Mat intrinsic_sigma, extrinsic_sigma, errors;
-  c.rms = cv::calibrateCamera(views.board, views.corners[static_cast<std::size_t>(eye)], size, c.K, c.D, c.rotations,
-                              c.translations, intrinsic_sigma, extrinsic_sigma, errors);
-  const std::array<double, 9> found = {c.K.at<double>(0, 0), c.K.at<double>(1, 1), c.K.at<double>(0, 2),
-                                       c.K.at<double>(1, 2), c.D.at<double>(0),    c.D.at<double>(1),
-                                       c.D.at<double>(2),    c.D.at<double>(3),    c.D.at<double>(4)};
+  const double rms = cv::calibrateCamera(views.board, views.corners[static_cast<std::size_t>(eye)], size, K, D, rotations,
+                                         translations, intrinsic_sigma, extrinsic_sigma, errors);
+  EXPECT_LT(rms, 0.1);
+  const std::array<double, 9> found = {K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2),
+                                       K.at<double>(1, 2), D.at<double>(0),    D.at<double>(1),
+                                       D.at<double>(2),    D.at<double>(3),    D.at<double>(4)};
   const std::array<double, 9> expected = {truth.fx, truth.fy, truth.cx, truth.cy, truth.k1,
                                           truth.k2, truth.p1, truth.p2, truth.k3};
   const char* names[] = {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"};
   for (std::size_t i = 0; i < found.size(); ++i) {
     const double sigma = intrinsic_sigma.at<double>(static_cast<int>(i));
     EXPECT_LT(std::abs(found[i] - expected[i]), 3 * sigma) << "eye " << eye << " " << names[i] << " " << found[i];
+    // An estimate that knows nothing would pass anything.
+    EXPECT_LT(sigma, i < 4 ? 2.0 : i == 8 ? 1.0 : 0.1) << names[i];
   }
-  return c;
 }
+
+cv::Mat MatrixOf(const CameraIntrinsics& c) { return (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1); }
+cv::Mat DistortionOf(const CameraIntrinsics& c) { return (cv::Mat_<double>(1, 5) << c.k1, c.k2, c.p1, c.p2, c.k3); }
 
 Pose ToPose(const cv::Mat& rotation, const cv::Mat& translation) {
   cv::Matx33d R;
@@ -126,29 +126,36 @@ Vector3d RotationVector(const Matrix3d& R) {
   return turn.angle() * turn.axis();
 }
 
+Pose BoardPose(const Views& views, int eye, std::size_t view, const CameraIntrinsics& c) {
+  cv::Mat rotation, translation;
+  cv::solvePnP(views.board[view], views.corners[static_cast<std::size_t>(eye)][view], MatrixOf(c), DistortionOf(c), rotation,
+               translation);
+  return ToPose(rotation, translation);
+}
+
 TEST(Chessboard, OpenCvFindsTheConfiguredRig) {
   StereoRig rig;
   rig.calibration = test::SmallCalibration(0.5);
+  const StereoCalibration& c = rig.calibration;
   const Views views = RenderViews(rig);
   ASSERT_EQ(views.board.size(), kViews);
-  const cv::Size size(rig.calibration.width, rig.calibration.height);
-  Calibrated left = CheckEye(views, 0, rig.calibration.left, size);
-  Calibrated right = CheckEye(views, 1, rig.calibration.right, size);
-  EXPECT_LT(left.rms, 0.1);
-  EXPECT_LT(right.rms, 0.1);
+  const cv::Size size(c.width, c.height);
+  CheckEye(views, 0, c.left, size);
+  CheckEye(views, 1, c.right, size);
 
-  // stereoCalibrate gives no standard errors; the spread over the views does: each alone gives the
-  // pose between the eyes.
-  cv::Mat R, T, E, F;
-  cv::stereoCalibrate(views.board, views.corners[0], views.corners[1], left.K, left.D, right.K, right.D, size, R, T, E, F,
+  // The pose between the eyes with the configured intrinsics, since stereoCalibrate gives no
+  // standard errors that could carry those of the intrinsics on; its own ones are the spread over
+  // the views, each of which gives that pose alone.
+  cv::Mat K1 = MatrixOf(c.left), D1 = DistortionOf(c.left), K2 = MatrixOf(c.right), D2 = DistortionOf(c.right);
+  cv::Mat R, T, E, F, rotation;
+  cv::stereoCalibrate(views.board, views.corners[0], views.corners[1], K1, D1, K2, D2, size, R, T, E, F,
                       cv::CALIB_FIX_INTRINSIC);
-  cv::Mat rotation;
   cv::Rodrigues(R, rotation);
   const Pose found = ToPose(rotation, T);
-  const Pose& truth = rig.calibration.T_right_left;
+  const Pose& truth = c.T_right_left;
   Vector6d variance = Vector6d::Zero();
   for (std::size_t i = 0; i < kViews; ++i) {
-    const Pose view = ToPose(right.rotations[i], right.translations[i]) * ToPose(left.rotations[i], left.translations[i]).Inverse();
+    const Pose view = BoardPose(views, 1, i, c.right) * BoardPose(views, 0, i, c.left).Inverse();
     Vector6d off;
     off << RotationVector(view.R * found.R.transpose()), view.t - found.t;
     variance += off.cwiseAbs2() / (kViews * (kViews - 1));
@@ -157,7 +164,7 @@ TEST(Chessboard, OpenCvFindsTheConfiguredRig) {
   off << RotationVector(found.R * truth.R.transpose()), found.t - truth.t;
   for (int i = 0; i < 6; ++i) {
     EXPECT_LT(std::abs(off[i]), 3 * std::sqrt(variance[i])) << (i < 3 ? "rotation " : "translation ") << i % 3;
-    EXPECT_LT(std::abs(off[i]), i < 3 ? 1e-3 : 5e-4) << "rad or m: the estimate itself is good";
+    EXPECT_LT(std::abs(off[i]), i < 3 ? 5e-4 : 3e-4) << "rad or m: the estimate itself is good";
   }
 }
 

@@ -21,9 +21,9 @@ Camera Pinhole(double psf_sigma_px = 0.5) {
 // middle and is turned by `angle_rad`.
 Scene Step(double angle_rad, double offset_px) {
   Scene scene;
-  scene.meshes = {MakeBox({6, 6, 0.1F}), MakeBox({8, 8, 0.1F})};
+  scene.meshes = {MakeBox({6, 6, 1e-4F}), MakeBox({8, 8, 0.1F})};
   const Matrix3d turn = Eigen::AngleAxisd(angle_rad, Vector3d::UnitZ()).toRotationMatrix();
-  Instance bright = test::Glowing(0, {turn, turn * Vector3d(3 + offset_px / 100, 0, 0) + Vector3d(0, 0, 1.05)});
+  Instance bright = test::Glowing(0, {turn, turn * Vector3d(3 + offset_px / 100, 0, 0) + Vector3d(0, 0, 1)});
   Instance dark = test::Glowing(1, {Matrix3d::Identity(), Vector3d(0, 0, 1.3)});
   bright.material.albedo = 0.8F;
   dark.material.albedo = 0.2F;
@@ -39,24 +39,20 @@ double Bilinear(const dataset::GrayImage& image, const Eigen::Vector2d& p) {
   return (1 - v) * ((1 - u) * at(x, y) + u * at(x + 1, y)) + v * ((1 - u) * at(x, y + 1) + u * at(x + 1, y + 1));
 }
 
-// Where the grey level crosses the middle between both sides, along the normal at `along_px`.
+// Where the step is along the normal at `along_px`: the place whose ideal step has the profile's
+// integral, which interpolation between pixels keeps.
 double EdgeAt(const dataset::GrayImage& image, const Eigen::Vector2d& normal, double along_px) {
   const Eigen::Vector2d middle = Eigen::Vector2d::Constant(0.5 * (kSide - 1)) + along_px * Eigen::Vector2d(-normal.y(), normal.x());
-  constexpr double kReach = 6, kStep = 0.1;
-  double low = 0, high = 0;
-  for (double d = 3; d < kReach; d += kStep) {
-    low += Bilinear(image, middle - d * normal);
-    high += Bilinear(image, middle + d * normal);
+  constexpr int kSteps = 40;
+  constexpr double kStep = 0.1;  // px; the step within 4 px, its two levels from 4 to 8 px off
+  double low = 0, high = 0, sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double inner = (i + 0.5) * kStep, outer = inner + kSteps * kStep;
+    low += Bilinear(image, middle - outer * normal) / kSteps;
+    high += Bilinear(image, middle + outer * normal) / kSteps;
+    sum += kStep * (Bilinear(image, middle + inner * normal) + Bilinear(image, middle - inner * normal));
   }
-  const double level = 0.5 * (low + high) / std::round((kReach - 3) / kStep);
-  double before = -3, value = Bilinear(image, middle + before * normal);
-  for (double d = -3 + kStep; d < 3; d += kStep) {
-    const double next = Bilinear(image, middle + d * normal);
-    if (value < level && next >= level) return before + kStep * (level - value) / (next - value);
-    before = d;
-    value = next;
-  }
-  return 1e9;
+  return kSteps * kStep - (sum - 2 * kSteps * kStep * low) / (high - low);
 }
 
 TEST(EdgePosition, IsWithinThreeHundredthsOfAPixelInAllDirections) {
