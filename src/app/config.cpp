@@ -11,7 +11,6 @@ namespace {
 using yaml::YamlSection;
 
 constexpr std::int64_t kMaxFrames = 1'000'000'000;
-constexpr std::size_t kMaxFrameId = 63;  // bound of std_msgs::Header's frame_id in dds_idl
 
 hal::ReplayConfig ReadReplay(YamlSection section) {
   hal::ReplayConfig config;
@@ -20,6 +19,7 @@ hal::ReplayConfig ReadReplay(YamlSection section) {
   section.Read("split", config.split);
   if (section.Read("scene", scene, 0, 999'999)) config.scene_id = static_cast<int>(scene);
   section.Read("loop", config.loop);
+  section.Read("preload", config.preload);
   section.Read("frame_rate_hz", config.frame_rate_hz, 0, 1000);
   section.Finish();
   return config;
@@ -63,16 +63,6 @@ CameraConfig ReadCamera(YamlSection section, const std::filesystem::path& file) 
   return config;
 }
 
-void ReadDds(YamlSection section, Config& config) {
-  std::int64_t domain = 0;
-  section.Read("domain", domain, 0, kMaxDomain);
-  section.Read("loopback", config.bus.loopback);
-  section.Read("frame_id", config.frame_id);
-  if (config.frame_id.size() > kMaxFrameId) section.Refuse("frame_id", "longer than 63 bytes");
-  section.Finish();
-  config.bus.domain = static_cast<std::uint32_t>(domain);
-}
-
 }  // namespace
 
 CameraBackend ParseCameraBackend(const std::string& name, const std::string& where) {
@@ -88,7 +78,7 @@ Config LoadConfig(const std::filesystem::path& file) {
     Config config;
     config.file = file;
     config.camera = ReadCamera(section.Section("camera"), file);
-    ReadDds(section.Section("dds"), config);
+    config.dds = ReadDds(section.Section("dds"));
     section.Read("models", config.models);
     section.Read("search_for", config.search_for);
     section.Finish();

@@ -49,9 +49,12 @@ struct Match {
 // disparity `reachable - 1`, so that memory runs up.
 WIREPOSE_VECTOR_KERNEL void AddRow(const std::uint8_t* left, const std::uint8_t* right, int count, int reachable, std::uint16_t* cost) {
   for (int j = 0; j < count; ++j) {
-    const int l = left[j];
+    const std::uint8_t l = left[j];
     for (int k = 0; k < reachable; ++k) {
-      cost[k] = static_cast<std::uint16_t>(cost[k] + static_cast<std::uint16_t>(std::abs(l - right[k + j])));
+      // Difference of bytes without widening: twice the lanes of |l - r| in integers.
+      const std::uint8_t r = right[k + j];
+      const auto difference = static_cast<std::uint8_t>((l > r ? l : r) - (l > r ? r : l));
+      cost[k] = static_cast<std::uint16_t>(cost[k] + difference);
     }
   }
 }
@@ -126,6 +129,16 @@ WIREPOSE_VECTOR_KERNEL void AddCosts(const std::uint16_t* cost, int count, std::
   for (int d = 0; d < count; ++d) sum[d] = static_cast<std::uint16_t>(sum[d] + cost[d]);
 }
 
+// Lowers best_at[d] to sum[d] and returns the smallest sum.
+WIREPOSE_VECTOR_KERNEL std::uint16_t LowerTo(const std::uint16_t* sum, int count, std::uint16_t* best_at) {
+  std::uint16_t lowest = 0xFFFF;
+  for (int d = 0; d < count; ++d) {
+    best_at[d] = best_at[d] < sum[d] ? best_at[d] : sum[d];
+    lowest = lowest < sum[d] ? lowest : sum[d];
+  }
+  return lowest;
+}
+
 // Smallest cost over all (middle disparity, slope). Slopes advance such that the ends move by one pixel.
 Match SearchDisparity(const StereoLineParams& params, const Segment2& segment, const RowSamples& rows,
                       StereoScratch& scratch) {
@@ -146,14 +159,14 @@ Match SearchDisparity(const StereoLineParams& params, const Segment2& segment, c
       const int d1 = std::min(kMaxDisparity, kMaxDisparity - shift);
       AddCosts(scratch.cost[r].data() + shift + d0, d1 - d0, scratch.sum.data() + d0);
     }
-    for (int d = 1 - low; d < kMaxDisparity - high; ++d) {
-      const std::uint16_t c = scratch.sum[static_cast<std::size_t>(d)];
-      scratch.best_at[static_cast<std::size_t>(d)] = std::min(scratch.best_at[static_cast<std::size_t>(d)], c);
-      if (c >= best) continue;
-      best = c;
-      match.disparity_a = static_cast<float>(d - s);
-      match.disparity_b = static_cast<float>(d + s);
-    }
+    const int first = 1 - low, count = kMaxDisparity - high - first;
+    if (count <= 0) continue;
+    const std::uint16_t lowest = LowerTo(scratch.sum.data() + first, count, scratch.best_at.data() + first);
+    if (lowest >= best) continue;
+    best = lowest;
+    const auto d = static_cast<float>(std::find(scratch.sum.begin() + first, scratch.sum.end(), lowest) - scratch.sum.begin());
+    match.disparity_a = d - static_cast<float>(s);
+    match.disparity_b = d + static_cast<float>(s);
   }
   const auto n = static_cast<float>(rows.size());
   if (static_cast<float>(best) >= 0.8F * static_cast<float>(kNoCost) * n) return match;

@@ -54,13 +54,13 @@ Result<dataset::GrayImage, std::string> ReadImage(const std::filesystem::path& f
 }
 
 Outcome ProcessFrame(const dataset::FrameEntry& entry, const StereoCalibration& calibration, Recognizer& recognizer,
-                     StageClock& clock, RecognitionResult& result, FrameTimes& times) {
+                     StageClock& clock, StageObserver& observer, RecognitionResult& result, FrameTimes& times) {
   const auto left = ReadImage(entry.left_path, calibration);
   if (!left) return Error(left.error());
   const auto right = ReadImage(entry.right_path, calibration);
   if (!right) return Error(right.error());
   clock.Start();
-  const RecognizerError error = recognizer.Process(left->view(), right->view(), &clock, result);
+  const RecognizerError error = recognizer.Process(left->view(), right->view(), &observer, result);
   times = clock.Stop();
   if (error == RecognizerError::kOk) return {};
   return Error(fmt::format("{}: {}", entry.left_path.string(), Describe(error)));
@@ -128,14 +128,17 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
   if (!ready) return Error(ready.error());
   Evaluation evaluation;
   StageClock clock;
+  StageTrace trace(recognizer, &clock);
   RecognitionResult result;
   for (std::size_t i = 0; i < set.frames.size(); ++i) {
     FrameTimes times;
-    const Outcome done = ProcessFrame(set.frames[i], set.calibration, recognizer, clock, result, times);
+    trace.Start(set.frames[i].gt);
+    StageObserver& stages = options.trace ? static_cast<StageObserver&>(trace) : clock;
+    const Outcome done = ProcessFrame(set.frames[i], set.calibration, recognizer, clock, stages, result, times);
     if (!done) return Error(done.error());
     Record(set.frames[i], result, times, options.min_score, evaluation);
     if (!observer) continue;
-    const Outcome seen = observer({i, set.frames.size(), set.frames[i], recognizer, models, result});
+    const Outcome seen = observer({i, set.frames.size(), set.frames[i], recognizer, models, result, trace.Finish(result)});
     if (!seen) return Error(seen.error());
   }
   evaluation.metrics = ComputeMetrics(truth, evaluation.estimates);

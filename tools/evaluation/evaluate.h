@@ -13,6 +13,7 @@
 #include "tools/evaluation/metrics.h"
 #include "tools/evaluation/model_set.h"
 #include "tools/evaluation/stage_clock.h"
+#include "tools/evaluation/stage_trace.h"
 
 namespace wirepose::evaluation {
 
@@ -21,6 +22,7 @@ struct EvaluationOptions {
   std::filesystem::path models;  // .wpm file or folder; empty: compile DATASET/models
   std::vector<int> object_ids;   // search only for these; empty: for all
   std::size_t frame_limit = 0;   // the first so many frames, and judge by them alone; 0: all
+  bool trace = false;            // follow the true instances through the stages
   double min_score = 0;          // detections below are dropped before anything else looks at them
 };
 
@@ -47,6 +49,7 @@ struct FrameView {
   const Recognizer& recognizer;  // with its intermediates of this frame
   const ModelSet& models;
   const RecognitionResult& result;  // all detections, also those below min_score
+  const std::vector<InstanceTrace>& traces;  // one per true instance; without poses unless options.trace
 };
 using FrameObserver = std::function<Result<void, std::string>(const FrameView&)>;
 
