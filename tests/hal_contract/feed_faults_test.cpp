@@ -34,7 +34,9 @@ class FeedFaults : public testing::Test {
 
   SimulatedConfig Config(const std::string& feed) const {
     std::ofstream(folder_.path() / "scenario.yaml")
-        << "rate_hz: 10\nsamples: 4\npath: { kind: orbit, speed_m_per_s: 0.6 }\nfeed:\n" << feed;
+        << "rate_hz: 10\nsamples: 4\nroom: { kind: studio }\nobjects: [ { model: parcel_box, visible: [0, 1] } ]\n"
+        << "clutter: { count: 0 }\npath: { kind: orbit, speed_m_per_s: 0.6 }\nfeed:\n"
+        << feed;
     SimulatedConfig config;
     config.scenario_path = folder_.path() / "scenario.yaml";
     config.frame_count = 5;
