@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "dds_idl/diagnostic_msgs.h"
+#include "dds_idl/sensor_msgs.h"
 #include "dds_idl/vision_msgs.h"
 #include "dds_idl/visualization_msgs.h"
 #include "dds_idl/wirepose.h"
@@ -92,6 +93,8 @@ const TopicSpec& Spec(TopicId topic) {
        "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf"},
       {"diagnostics", "rt/diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, 1, 1, false,
        "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"},
+      {"image", "rt/wirepose/left/image_raw", &sensor_msgs_msg_dds__Image__desc, 1, 1, false,
+       "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"},
       {"command", "wirepose/command", &wirepose_Command_desc, 16, 16, false, nullptr},
       {"command_status", "wirepose/command_status", &wirepose_CommandStatus_desc, 16, 16, false, nullptr},
   };

@@ -13,6 +13,18 @@ std_msgs_msg_dds__Header_ RosHeader(std::chrono::nanoseconds stamp, std::string_
   return header;
 }
 
+void FillMessage(const ImageReport& image, std::string_view frame_id, sensor_msgs_msg_dds__Image_& message) {
+  static_assert(kMaxPixels == 307200, "change the bound in dds_idl/sensor_msgs.idl too");
+  message.header = RosHeader(image.stamp, frame_id);
+  message.height = static_cast<std::uint32_t>(image.height);
+  message.width = message.step = static_cast<std::uint32_t>(image.width);
+  CopyText("mono8", message.encoding);
+  message.is_bigendian = 0;
+  const std::uint32_t size = message.width * message.height;
+  // The C types of IDL know no const; writing does not change the pixels.
+  message.data = {size, size, const_cast<std::uint8_t*>(image.pixels.data()), false};
+}
+
 geometry_msgs_msg_dds__Pose_ RosPose(const Pose& T) {
   const std::array<double, 4> q = QuaternionOf(T.R);
   return {{T.t.x(), T.t.y(), T.t.z()}, {q[0], q[1], q[2], q[3]}};

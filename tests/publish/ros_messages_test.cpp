@@ -232,6 +232,13 @@ TEST(MessageBounds, FullMessagesFitTheirSlots) {
   const auto status = std::make_unique<CommandStatusMessage>();
   FillMessage(test::FullAnswer(), *status);
 
+  const auto picture = std::make_unique<ImageReport>();
+  const std::vector<std::uint8_t> pixels(kMaxPixels);
+  FillImage({pixels.data(), kMaxImageWidth, kMaxImageHeight, kMaxImageWidth}, *picture);
+  const auto image = std::make_unique<sensor_msgs_msg_dds__Image_>();
+  FillMessage(*picture, test::LongText(), *image);
+  std::memset(image->encoding, 'x', sizeof image->encoding - 1);
+
   const struct {
     TopicId topic;
     const void* message;
@@ -243,6 +250,7 @@ TEST(MessageBounds, FullMessagesFitTheirSlots) {
       {TopicId::kMarkers, &markers->value, kMaxMarkersBytes},
       {TopicId::kDiagnostics, &diagnostics->value, kMaxDiagnosticsBytes},
       {TopicId::kCommandStatus, &status->value, kMaxCommandStatusBytes},
+      {TopicId::kImage, image.get(), kMaxImageBytes},
   };
   for (const auto& [topic, message, slot_bytes] : cases) {
     const std::uint32_t bytes = SerializedBytes(topic, message);

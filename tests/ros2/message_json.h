@@ -91,6 +91,16 @@ inline Json RosJson(const diagnostic_msgs_msg_dds__DiagnosticArray_& message) {
   return {{"header", HeaderJson(message.header)}, {"status", EachOf(message.status, status)}};
 }
 
+inline Json RosJson(const sensor_msgs_msg_dds__Image_& message) {
+  return {{"header", HeaderJson(message.header)},
+          {"height", message.height},
+          {"width", message.width},
+          {"encoding", message.encoding},
+          {"is_bigendian", message.is_bigendian},
+          {"step", message.step},
+          {"data", EachOf(message.data, [](std::uint8_t byte) { return byte; })}};
+}
+
 }  // namespace wirepose::test
 
 #endif  // WIREPOSE_TESTS_ROS2_MESSAGE_JSON_H_

@@ -53,6 +53,7 @@ TEST_F(RecordTest, EveryTopicIsThereAndDecodes) {
   EXPECT_NE(record.Out().find("out.mcap: "), std::string::npos) << record.Out();
   const nlohmann::json file = Check();
   ASSERT_FALSE(file.is_null());
+  EXPECT_FALSE(file["topics"].contains("/wirepose/left/image_raw")) << "only with --images";
   const std::map<std::string, std::string> schemas = {
       {"/wirepose/detections", "vision_msgs/msg/Detection3DArray"},
       {"/wirepose/markers", "visualization_msgs/msg/MarkerArray"},
@@ -78,6 +79,15 @@ TEST_F(RecordTest, TopicsAndLengthCanBeChosen) {
   const nlohmann::json file = Check();
   EXPECT_EQ(file["topics"].size(), 1u);
   EXPECT_GE(file["topics"]["wirepose/recognition"]["messages"], 30);
+}
+
+TEST_F(RecordTest, ImagesComeWhenAskedFor) {
+  Process record(folder_, "record", Record({"--images", "--topic", "detections", "--frames", "20"}));
+  ASSERT_EQ(record.Wait(), 0) << record.Err();
+  const nlohmann::json file = Check();
+  EXPECT_EQ(file["topics"].size(), 2u);
+  EXPECT_EQ(file["topics"]["/wirepose/left/image_raw"]["schema"], "sensor_msgs/msg/Image");
+  EXPECT_GE(file["topics"]["/wirepose/left/image_raw"]["messages"], 10);
 }
 
 TEST_F(RecordTest, FailuresHaveOneLine) {

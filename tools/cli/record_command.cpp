@@ -22,7 +22,8 @@ using Clock = std::chrono::steady_clock;
 struct RecordOptions {
   BusOptions bus;
   std::string out;
-  std::vector<std::string> topics;  // keys; empty: all
+  std::vector<std::string> topics;  // keys; empty: all but the image
+  bool images = false;
   double duration_s = 0;
   std::uint64_t frames = 0;
 };
@@ -72,7 +73,9 @@ std::vector<Track> Subscribe(const RecordOptions& options, const Bus& bus, recor
   for (std::size_t i = 0; i < kTopicCount; ++i) {
     const auto topic = static_cast<TopicId>(i);
     const auto& wanted = options.topics;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), Spec(topic).key) == wanted.end()) continue;
+    const bool named = std::find(wanted.begin(), wanted.end(), Spec(topic).key) != wanted.end();
+    const bool image = topic == TopicId::kImage;
+    if (!named && !(image ? options.images : wanted.empty())) continue;
     tracks.push_back({topic, OpenReader(bus, topic), writer.AddChannel(record::ChannelOf(topic, config.topics[i].name))});
   }
   return tracks;
@@ -123,8 +126,9 @@ void AddRecordCommand(CLI::App& app) {
   command->add_option("--out", options->out, "file to write, .mcap; overwritten")->required();
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < kTopicCount; ++i) keys.emplace_back(Spec(static_cast<TopicId>(i)).key);
-  command->add_option("--topic", options->topics, "only this one; may be repeated; default: all")
+  command->add_option("--topic", options->topics, "only this one; may be repeated; default: all but the image")
       ->check(CLI::IsMember(keys));
+  command->add_flag("--images", options->images, "the left camera's image as well: 9 MB a second at 640x480 and 30 Hz");
   command->add_option("--duration", options->duration_s, "end after that many seconds; 0: never")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--frames", options->frames, "end after that many frames; 0: never");

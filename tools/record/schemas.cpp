@@ -51,6 +51,12 @@ constexpr Definition kDiagnostics[] = {
     {"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
     kHeader};
 
+constexpr Definition kImage[] = {
+    {"sensor_msgs/Image",
+     "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\n"
+     "uint8[] data\n"},
+    kHeader};
+
 // The first definition is the message's own; those it holds follow, as MCAP's ros2msg encoding wants it.
 std::string SchemaOf(std::span<const Definition> definitions) {
   std::string text = definitions[0].fields;
@@ -81,6 +87,8 @@ McapChannel ChannelOf(TopicId topic, const std::string& name) {
       return RosChannel(name, kMarkers);
     case TopicId::kDiagnostics:
       return RosChannel(name, kDiagnostics);
+    case TopicId::kImage:
+      return RosChannel(name, kImage);
     default:
       return {name, Spec(topic).type->m_typename, "omgidl", kWireposeIdl};
   }
