@@ -13,8 +13,8 @@
 namespace wirepose {
 namespace {
 
-// Small buffers and stacks: one participant needs about 0.2 MB instead of Cyclone's 2.5. It calls out once a second, not
-// once in 30: peers whose lease ran out while the network was cut find each other again at once.
+// Small buffers and stacks: one participant needs about 0.2 MB instead of Cyclone's 2.5. It calls out once a second,
+// not once in 30: peers whose lease ran out while the network was cut find each other again at once.
 constexpr char kSmall[] =
     R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain Id="any">
 <General><MaxMessageSize>8 KiB</MaxMessageSize></General>
@@ -117,7 +117,8 @@ Result<Bus, std::string> Bus::Open(const BusConfig& config) {
   // Somebody else in this process has opened the domain: its settings hold.
   const bool shared = domain == DDS_RETCODE_PRECONDITION_NOT_MET;
   if (domain < 0 && !shared) {
-    return unexpected(Failure(where, domain, "check CYCLONEDDS_URI, that the domain is 0 to 230, and the files of dds.security"));
+    return unexpected(
+        Failure(where, domain, "check CYCLONEDDS_URI, that the domain is 0 to 230, and the files of dds.security"));
   }
   DdsEntity owned_domain(shared ? 0 : domain);
   const dds_entity_t participant = dds_create_participant(config.domain, nullptr, nullptr);
@@ -140,8 +141,7 @@ Result<dds_entity_t, std::string> Bus::CreateWriter(TopicId id, SlotType* type) 
 
 Result<dds_entity_t, std::string> Bus::CreateReader(TopicId id, const dds_listener_t* listener) const {
   const TopicSettings& settings = topics_[static_cast<std::size_t>(id)];
-  const dds_entity_t topic =
-      dds_create_topic(participant(), Spec(id).type, settings.name.c_str(), nullptr, nullptr);
+  const dds_entity_t topic = dds_create_topic(participant(), Spec(id).type, settings.name.c_str(), nullptr, nullptr);
   const Qos qos = MakeQos(id, settings, false);
   return Created(topic < 0 ? topic : dds_create_reader(participant(), topic, qos.get(), listener), "reader", settings);
 }

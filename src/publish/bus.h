@@ -46,7 +46,7 @@ const TopicSpec& Spec(TopicId topic);
 struct TopicSettings {
   std::string name;
   bool reliable = true;
-  std::int32_t depth = 1;                // keep-last: samples kept for a slow reader
+  std::int32_t depth = 1;                 // keep-last: samples kept for a slow reader
   std::chrono::milliseconds deadline{0};  // promised time from sample to sample; 0: none
 };
 using TopicTable = std::array<TopicSettings, kTopicCount>;

@@ -5,7 +5,8 @@
 namespace wirepose {
 
 std_msgs_msg_dds__Header_ RosHeader(std::chrono::nanoseconds stamp, std::string_view frame_id) {
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(stamp);  // nanosec counts forward from sec, also before 0
+  const auto seconds =
+      std::chrono::floor<std::chrono::seconds>(stamp);  // nanosec counts forward from sec, also before 0
   std_msgs_msg_dds__Header_ header{};
   header.stamp.sec = static_cast<std::int32_t>(seconds.count());
   header.stamp.nanosec = static_cast<std::uint32_t>((stamp - seconds).count());

@@ -149,9 +149,9 @@ void FillMessage(const FrameReport& report, std::string_view frame_id, Recogniti
 // wirepose/health. `version` is the program's.
 void FillMessage(const HealthReport& report, std::string_view version, HealthMessage& message);
 
-// rt/wirepose/markers: for RViz and Foxglove. First a marker that removes those of the frame before. Namespaces: "lines"
-// (all 3D lines, grey), "wireframe", "line_set" and "label" with the object's number in the frame as id; an object's
-// three have one colour.
+// rt/wirepose/markers: for RViz and Foxglove. First a marker that removes those of the frame before. Namespaces:
+// "lines" (all 3D lines, grey), "wireframe", "line_set" and "label" with the object's number in the frame as id; an
+// object's three have one colour.
 void FillMessage(const SceneReport& scene, std::string_view frame_id, MarkersMessage& message);
 
 // rt/wirepose/left/image_raw, mono8. The message points into the report, which must outlive its use.

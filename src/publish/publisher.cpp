@@ -5,9 +5,8 @@
 namespace wirepose {
 namespace {
 
-constexpr TopicId kWritten[] = {TopicId::kDetections, TopicId::kRecognition, TopicId::kHealth,
-                                TopicId::kMarkers,    TopicId::kDiagnostics, TopicId::kImage,
-                                TopicId::kCommandStatus};
+constexpr TopicId kWritten[] = {TopicId::kDetections,  TopicId::kRecognition, TopicId::kHealth,       TopicId::kMarkers,
+                                TopicId::kDiagnostics, TopicId::kImage,       TopicId::kCommandStatus};
 
 void WakeOnData(dds_entity_t, void* outbox) { static_cast<Outbox*>(outbox)->Wake(); }
 

@@ -29,9 +29,9 @@ struct PublisherConfig {
 // The robot program's result sink and its ear. Messages, queue and the writers' memory are part of the object: make it
 // static.
 //
-// Threads: one thread owns it (Open, Publish, Answer, TakeCommand, Close); the counters may be read anywhere. No call but
-// Open and Close waits for the network: what the publisher's thread cannot send in time is given up, the oldest first,
-// and counted.
+// Threads: one thread owns it (Open, Publish, Answer, TakeCommand, Close); the counters may be read anywhere. No call
+// but Open and Close waits for the network: what the publisher's thread cannot send in time is given up, the oldest
+// first, and counted.
 class Publisher {
  public:
   Publisher();

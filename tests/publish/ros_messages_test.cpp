@@ -66,7 +66,8 @@ TEST_F(MarkersTest, ShowObjectAndLines) {
   EXPECT_EQ(Marker(2).pose.position.x, T.t.x()) << "the wireframe is in the model's frame";
   EXPECT_EQ(Marker(3).pose.position.x, 0) << "the image lines are in the camera's";
   EXPECT_EQ(Marker(3).pose.orientation.w, 1);
-  EXPECT_EQ(std::memcmp(&Marker(2).color, &Marker(3).color, sizeof Marker(2).color), 0) << "a set has its object's colour";
+  EXPECT_EQ(std::memcmp(&Marker(2).color, &Marker(3).color, sizeof Marker(2).color), 0)
+      << "a set has its object's colour";
 }
 
 TEST_F(MarkersTest, EmptySceneClearsTheDisplay) {

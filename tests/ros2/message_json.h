@@ -29,8 +29,7 @@ Json VectorJson(const Vector& v) {
 
 inline Json PoseJson(const geometry_msgs_msg_dds__Pose_& pose) {
   const auto& q = pose.orientation;
-  return {{"position", VectorJson(pose.position)},
-          {"orientation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
+  return {{"position", VectorJson(pose.position)}, {"orientation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
 }
 
 inline Json ColorJson(const std_msgs_msg_dds__ColorRGBA_& color) {

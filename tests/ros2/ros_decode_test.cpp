@@ -125,8 +125,8 @@ TEST_F(RosDecodeTest, Image) {
   Decode();
 }
 
-// ROS 2 from Iron on asks for the hash of the type, and warns where it is missing. The script checks itself on hashes that
-// ROS 2 generated, then computes ours from the official definitions.
+// ROS 2 from Iron on asks for the hash of the type, and warns where it is missing. The script checks itself on hashes
+// that ROS 2 generated, then computes ours from the official definitions.
 TEST_F(RosDecodeTest, TypeHashesAreThoseOfTheOfficialDefinitions) {
   Process node(folder_, "node", NodeCommand("type_hash.mjs", {}));
   ASSERT_EQ(node.Wait(), 0) << node.Err();

@@ -45,7 +45,9 @@ struct Track {
 void Write(ddsi_serdata* data, const dds_sample_info_t& info, const Track& track, record::McapWriter& writer) {
   ddsrt_iovec_t bytes{};
   ddsi_serdata* const reference = ddsi_serdata_to_ser_ref(data, 0, ddsi_serdata_size(data), &bytes);
-  const auto written = writer.Write({track.channel, Now_ns(), static_cast<std::uint64_t>(info.source_timestamp),
+  const auto written = writer.Write({track.channel,
+                                     Now_ns(),
+                                     static_cast<std::uint64_t>(info.source_timestamp),
                                      {static_cast<const unsigned char*>(bytes.iov_base), bytes.iov_len}});
   ddsi_serdata_to_ser_unref(reference, &bytes);
   if (!written) throw WorkFailed(written.error());
@@ -76,7 +78,8 @@ std::vector<Track> Subscribe(const RecordOptions& options, const Bus& bus, recor
     const bool named = std::find(wanted.begin(), wanted.end(), Spec(topic).key) != wanted.end();
     const bool image = topic == TopicId::kImage;
     if (!named && !(image ? options.images : wanted.empty())) continue;
-    tracks.push_back({topic, OpenReader(bus, topic), writer.AddChannel(record::ChannelOf(topic, config.topics[i].name))});
+    tracks.push_back(
+        {topic, OpenReader(bus, topic), writer.AddChannel(record::ChannelOf(topic, config.topics[i].name))});
   }
   return tracks;
 }
@@ -108,9 +111,10 @@ void Record(const RecordOptions& options) {
   }
   if (const auto finished = writer->Finish(); !finished) throw WorkFailed(finished.error());
   if (writer->messages() == 0) {
-    throw WorkFailed(fmt::format("{}: nothing arrived on {}; is wireposed running with the same domain, loopback "
-                                 "setting and topic names?",
-                                 options.out, Where(options.bus)));
+    throw WorkFailed(
+        fmt::format("{}: nothing arrived on {}; is wireposed running with the same domain, loopback "
+                    "setting and topic names?",
+                    options.out, Where(options.bus)));
   }
   std::string summary;
   for (const Track& track : tracks) summary += fmt::format(" {} {}", Spec(track.topic).key, track.messages);

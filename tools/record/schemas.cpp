@@ -28,7 +28,11 @@ constexpr Definition kDetections[] = {
     {"vision_msgs/ObjectHypothesis", "string class_id\nfloat64 score\n"},
     {"vision_msgs/BoundingBox3D", "geometry_msgs/Pose center\ngeometry_msgs/Vector3 size\n"},
     {"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
-    kHeader, kPose, kPoint, kQuaternion, kVector3};
+    kHeader,
+    kPose,
+    kPoint,
+    kQuaternion,
+    kVector3};
 
 constexpr Definition kMarkers[] = {
     {"visualization_msgs/MarkerArray", "visualization_msgs/Marker[] markers\n"},
@@ -42,7 +46,11 @@ constexpr Definition kMarkers[] = {
     {"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
     {"sensor_msgs/CompressedImage", "std_msgs/Header header\nstring format\nuint8[] data\n"},
     {"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"},
-    kHeader, kPose, kPoint, kQuaternion, kVector3};
+    kHeader,
+    kPose,
+    kPoint,
+    kQuaternion,
+    kVector3};
 
 constexpr Definition kDiagnostics[] = {
     {"diagnostic_msgs/DiagnosticArray", "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status\n"},
