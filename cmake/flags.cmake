@@ -6,7 +6,9 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_C_STANDARD 11)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
-set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_SYSTEM_NAME STREQUAL Generic)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+endif()
 
 find_program(WIREPOSE_CCACHE ccache)
 if(WIREPOSE_CCACHE)
@@ -26,6 +28,13 @@ target_compile_options(wirepose_core_rules INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti -fno-threadsafe-statics -ffunction-sections -fdata-sections
                             # Square roots are one instruction, and vectorize; no value changes.
                             -fno-math-errno -fno-trapping-math>)
+
+# For scripts/stack-depth: a call graph with frame sizes beside each object file. The compiler cache would forget them.
+option(WIREPOSE_CALL_GRAPH "Write call graphs of the core (GCC)" OFF)
+if(WIREPOSE_CALL_GRAPH)
+  target_compile_options(wirepose_core_rules INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-fcallgraph-info=su,da>)
+  unset(CMAKE_CXX_COMPILER_LAUNCHER)
+endif()
 
 if(WIREPOSE_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kNominalRate = 30;  // Hz, of stamps when frames come as fast as asked for
 constexpr double kMaxRate = 1000;    // Hz
+constexpr std::size_t kMaxPreload = std::size_t{1} << 30;  // bytes
 
 }  // namespace
 
@@ -42,8 +43,12 @@ CameraError ReplayCamera::DoOpen(StereoCalibration& calibration) {
   }
   dataset_ = *std::move(dataset);
   calibration = dataset_.calibration;
-  ring_.Allocate(calibration.width, calibration.height);
   detail_.clear();
+  preloaded_.clear();
+  if (config_.preload) {
+    if (const CameraError failed = Preload(); failed != CameraError::kOk) return failed;
+  }
+  ring_.Allocate(calibration.width, calibration.height);
   return CameraError::kOk;
 }
 
@@ -57,6 +62,7 @@ CameraError ReplayCamera::DoStart() {
 void ReplayCamera::DoClose() {
   ring_.Free();
   dataset_ = {};
+  preloaded_ = {};
   detail_.clear();
 }
 
@@ -78,22 +84,51 @@ bool ReplayCamera::WaitUntilDue(std::chrono::nanoseconds timeout) const {
   return wait <= timeout;
 }
 
-FrameStatus ReplayCamera::Load(const std::filesystem::path& path, const MutableImageView& image) {
-  const std::size_t bytes = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  const Result<dataset::GrayImage, dataset::ImageError> file = dataset::ReadGrayPng(path);
-  if (file && file->width == image.width && file->height == image.height) {
-    std::memcpy(image.data, file->pixels.data(), bytes);
-    return FrameStatus::kGood;
+ReplayCamera::Picture ReplayCamera::Decode(const std::filesystem::path& path) const {
+  Picture picture;
+  Result<dataset::GrayImage, dataset::ImageError> file = dataset::ReadGrayPng(path);
+  const StereoCalibration& rig = dataset_.calibration;
+  if (file && file->width == rig.width && file->height == rig.height) {
+    picture.pixels = std::move(file->pixels);
+  } else if (!file) {
+    picture.status = file.error().missing ? FrameStatus::kImageMissing : FrameStatus::kImageDamaged;
+    picture.detail = file.error().message;
+  } else {
+    picture.status = FrameStatus::kImageDamaged;
+    picture.detail = path.string() + ": image is " + std::to_string(file->width) + " x " +
+                     std::to_string(file->height) + ", calib.yaml says " + std::to_string(rig.width) + " x " +
+                     std::to_string(rig.height) + "; record it again or calibrate for its size";
   }
-  std::memset(image.data, 0, bytes);
-  if (!file) {
-    detail_ = file.error().message;
-    return file.error().missing ? FrameStatus::kImageMissing : FrameStatus::kImageDamaged;
+  return picture;
+}
+
+CameraError ReplayCamera::Preload() {
+  const StereoCalibration& rig = dataset_.calibration;
+  const std::size_t bytes =
+      2 * dataset_.frames.size() * static_cast<std::size_t>(rig.width) * static_cast<std::size_t>(rig.height);
+  if (bytes > kMaxPreload) {
+    return Fail(CameraError::kUnsupported, config_.root.string() + ": more than 1 GiB of images; leave out preload or name one scene");
   }
-  detail_ = path.string() + ": image is " + std::to_string(file->width) + " x " + std::to_string(file->height) +
-            ", calib.yaml says " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-            "; record it again or calibrate for its size";
-  return FrameStatus::kImageDamaged;
+  preloaded_.reserve(2 * dataset_.frames.size());
+  for (const dataset::FrameEntry& entry : dataset_.frames) {
+    for (const auto& path : {entry.left_path, entry.right_path}) preloaded_.push_back(Decode(path));
+  }
+  return CameraError::kOk;
+}
+
+FrameStatus ReplayCamera::Load(std::size_t eye, const MutableImageView& image) {
+  const dataset::FrameEntry& entry = Entry(next_sequence_);
+  Picture decoded;
+  if (!config_.preload) decoded = Decode(eye == 0 ? entry.left_path : entry.right_path);
+  const std::size_t index = 2 * static_cast<std::size_t>(next_sequence_ % dataset_.frames.size()) + eye;
+  const Picture& picture = config_.preload ? preloaded_[index] : decoded;
+  if (picture.status == FrameStatus::kGood) {
+    std::memcpy(image.data, picture.pixels.data(), picture.pixels.size());
+  } else {
+    std::memset(image.data, 0, static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    detail_ = picture.detail;
+  }
+  return picture.status;
 }
 
 Result<StereoCamera::Captured, CameraError> ReplayCamera::DoAcquire(std::chrono::nanoseconds timeout) {
@@ -106,14 +141,13 @@ Result<StereoCamera::Captured, CameraError> ReplayCamera::DoAcquire(std::chrono:
   if (!buffer) {
     return unexpected(Fail(CameraError::kNoBuffer, "replay: all 4 buffers are leased"));
   }
-  const dataset::FrameEntry& entry = Entry(next_sequence_);
   Captured captured;
   captured.buffer = *buffer;
   StereoFrame& frame = captured.frame;
   frame.sequence = next_sequence_;
   frame.capture_time = CaptureTime(TimeOf(next_sequence_));
-  const FrameStatus left = Load(entry.left_path, ring_.left(*buffer));
-  const FrameStatus right = Load(entry.right_path, ring_.right(*buffer));
+  const FrameStatus left = Load(0, ring_.left(*buffer));
+  const FrameStatus right = Load(1, ring_.right(*buffer));
   if (left == FrameStatus::kImageMissing || right == FrameStatus::kImageMissing) {
     frame.status = FrameStatus::kImageMissing;
   } else {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hal/buffer_ring.h"
 #include "hal/dataset/dataset.h"
@@ -22,6 +23,9 @@ struct ReplayConfig {
   // Pace in frames per second, at most 1000. 0: a frame as soon as it is asked for, stamped as if
   // at 30 per second.
   double frame_rate_hz = 0;
+  // Decode all images in Open and keep them: AcquireFrame then neither reads files nor allocates.
+  // At most 1 GiB.
+  bool preload = false;
 };
 
 // Gives the frames of a data set in order, none dropped: a slow caller gets them late. Capture
@@ -29,9 +33,9 @@ struct ReplayConfig {
 // each time. Start begins at the first frame. A frame whose files are missing, undecodable or of
 // the wrong size arrives with that status; detail() says why. A damaged frame's pixels are zero.
 //
-// Four buffers, allocated by Open. Decoding a PNG file allocates temporary memory.
-// Open: kNotFound (no such folder), kBadData (malformed calibration or scene files), kUnsupported
-// (frame rate). AcquireFrame: kTimeout (paced and not due yet), kNoBuffer, kEndOfStream.
+// Four buffers, allocated by Open. Without `preload`, decoding a PNG file allocates temporary
+// memory. Open: kNotFound (no such folder), kBadData (malformed calibration or scene files),
+// kUnsupported (frame rate, too much to preload). AcquireFrame: kTimeout (paced and not due yet), kNoBuffer, kEndOfStream.
 class ReplayCamera final : public StereoCamera {
  public:
   static constexpr std::uint32_t kBuffers = 4;
@@ -56,11 +60,21 @@ class ReplayCamera final : public StereoCamera {
   CameraError Fail(CameraError error, std::string detail);
   [[nodiscard]] std::chrono::nanoseconds TimeOf(std::uint64_t sequence) const;
   [[nodiscard]] bool WaitUntilDue(std::chrono::nanoseconds timeout) const;
-  [[nodiscard]] FrameStatus Load(const std::filesystem::path& path, const MutableImageView& image);
+  // An image file's pixels, or why there are none.
+  struct Picture {
+    FrameStatus status = FrameStatus::kGood;
+    std::vector<std::uint8_t> pixels;  // empty unless kGood
+    std::string detail;
+  };
+  [[nodiscard]] Picture Decode(const std::filesystem::path& path) const;
+  [[nodiscard]] CameraError Preload();
+  // Fills the buffer of one eye (0 left, 1 right).
+  FrameStatus Load(std::size_t eye, const MutableImageView& image);
 
   ReplayConfig config_;
   dataset::Dataset dataset_;
   BufferRing<kBuffers> ring_;
+  std::vector<Picture> preloaded_;  // left, right of each frame in turn; empty without `preload`
   std::string detail_;
   std::uint64_t next_sequence_ = 0;
   std::chrono::steady_clock::time_point started_;

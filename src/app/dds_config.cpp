@@ -6,6 +6,8 @@
 namespace wirepose::app {
 namespace {
 
+using yaml::YamlSection;
+
 constexpr std::size_t kMaxFrameId = 63;  // bound of std_msgs::Header's frame_id in dds_idl
 constexpr std::size_t kMaxTopicName = 255;
 constexpr std::int64_t kMaxDeadline_ms = 60'000;

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "app/stamp_clock.h"
-#include "app/yaml_section.h"
 #include "publish/bus.h"
 #include "publish/dds_pool.h"
+#include "yaml/yaml_section.h"
 
 namespace wirepose::app {
 
@@ -19,7 +19,7 @@ struct DdsConfig {
 };
 
 // Reads and checks the whole section. Throws UsageError.
-DdsConfig ReadDds(YamlSection section);
+DdsConfig ReadDds(yaml::YamlSection section);
 
 }  // namespace wirepose::app
 

@@ -12,6 +12,7 @@
 #include "app/command_handler.h"
 #include "app/config.h"
 #include "app/failure.h"
+#include "app/memory_lock.h"
 #include "app/model_library.h"
 #include "app/robot_loop.h"
 #include "app/service.h"
@@ -88,6 +89,7 @@ void Run(const Options& options) {
   const DdsConfig& dds = config.dds;
   const auto opened = g_publisher.Open({dds.bus, dds.frame_id, WIREPOSE_VERSION, dds.pool_bytes});
   if (!opened) throw WorkFailed(opened.error());
+  if (const std::string warning = LockMemory(); !warning.empty()) std::fprintf(stderr, "wireposed: %s\n", warning.c_str());
   CheckCamera(camera->Start(), *camera);
 
   const std::string status = std::string(camera->name()) + " camera, " + std::to_string(g_recognizer.models().size()) +

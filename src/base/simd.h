@@ -6,7 +6,7 @@
 // load time. Only for loops whose result does not depend on the vector width: integers, or floats lane by lane in
 // source order (contraction is off everywhere). Other targets and sanitized builds compile it once.
 #if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
+    !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__) && !defined(WIREPOSE_ONE_VECTOR_WIDTH)
 #define WIREPOSE_VECTOR_KERNEL __attribute__((target_clones("avx2", "default")))
 #else
 #define WIREPOSE_VECTOR_KERNEL

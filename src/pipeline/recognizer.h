@@ -125,6 +125,9 @@ class Recognizer {
   [[nodiscard]] std::span<const Segment2> left_segments() const { return {left_segments_.items.begin(), left_segments_.items.end()}; }
   [[nodiscard]] std::span<const Segment2> right_segments() const { return {right_segments_.items.begin(), right_segments_.items.end()}; }
   [[nodiscard]] std::span<const Line3> lines() const { return {lines_.begin(), lines_.end()}; }
+  [[nodiscard]] const ImageLineSets& line_sets() const { return line_sets_; }
+  // Of the model at hand, during StageDone(kCorrespondences), in no particular order.
+  [[nodiscard]] std::span<const CorrespondingPair> corresponding_pairs() const { return pairs_.items(); }
   [[nodiscard]] std::size_t detection_count() const { return accepted_.size(); }
   // The corresponding line set behind detection i: which image line lies on which model edge.
   [[nodiscard]] std::span<const SetMember> line_set(std::size_t i) const;

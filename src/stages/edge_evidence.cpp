@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/portable_math.h"
 #include "stages/edge_profile.h"
 
 namespace wirepose {
@@ -165,8 +166,8 @@ class Gatherer {
     // An edge of one direction within 2 px is what the edge map counts; equal polarity and offset in both images are rarer.
     const float chance = std::clamp(0.7F * in_.left_edges.background, 0.03F, 0.4F);
     const float weight = e.length_px / (e.samples * params_.independent_px);
-    return weight * (e.hits * std::log(params_.support_rate / chance) +
-                     (e.samples - e.hits) * std::log((1 - params_.support_rate) / (1 - chance)));
+    return weight * (e.hits * Log(params_.support_rate / chance) +
+                     (e.samples - e.hits) * Log((1 - params_.support_rate) / (1 - chance)));
   }
 
   void CountSupported(const std::array<EdgeSupport, kMaxModelEdges>& support) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
+
 namespace wirepose {
 namespace {
 
@@ -48,7 +50,7 @@ class PairMaker {
   PairMaker(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines)
       : params_(params), lines_(lines) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      log_length_[i] = std::log(lines[i].segment.Length());
+      log_length_[i] = Log(lines[i].segment.Length());
       if (!lines[i].has_depth) continue;
       direction_sigma_[i] = DirectionSigma(camera, lines[i]);
       depth_sigma_[i] = DepthSigma(camera, lines[i]);
@@ -101,8 +103,8 @@ class PairMaker {
     return true;
   }
 
-  static float LogAngle(float sigma_rad) { return std::log(sigma_rad + 0.02F); }
-  static float LogDistance(float sigma_m) { return std::log((sigma_m + 0.003F) / 0.01F); }
+  static float LogAngle(float sigma_rad) { return Log(sigma_rad + 0.02F); }
+  static float LogDistance(float sigma_m) { return Log((sigma_m + 0.003F) / 0.01F); }
 
   static float Angle(float sine, float cosine) {
     const bool steep = sine > cosine;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/portable_math.h"
+
 namespace wirepose {
 
 PoseScorer::PoseScorer(const PoseScoreParams& params, const SceneEdges& scene, const PreparedModel& model)
@@ -19,8 +21,8 @@ PoseScorer::PoseScorer(const PoseScoreParams& params, const SceneEdges& scene, c
 
 PoseScorer::LogGain PoseScorer::Gain(const EdgeMap& map) const {
   const float background = std::clamp(map.background, 0.03F, 0.5F);
-  return {params_.sample_weight * std::log(params_.support_rate / background),
-          params_.sample_weight * std::log((1 - params_.support_rate) / (1 - background))};
+  return {params_.sample_weight * Log(params_.support_rate / background),
+          params_.sample_weight * Log((1 - params_.support_rate) / (1 - background))};
 }
 
 bool PoseScorer::Project(const PreparedEdge& edge, const Matrix3& R, const Vector3& t, Projected& out) const {

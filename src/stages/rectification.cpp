@@ -133,8 +133,8 @@ void ResampleRow(ImageView raw, const RowCursor& cursor, int begin, int end, std
     const std::int32_t u_end = u + (last - first) * dx, v_end = v + (last - first) * dy;
     const bool interior = std::max(u, u_end) >> 16 < last_x && std::max(v, v_end) >> 16 < last_y;
     for (int x = first; x < last; ++x, u += dx, v += dy) {
-      const int xi = interior ? u >> 16 : std::min(u >> 16, last_x);
-      const int yi = interior ? v >> 16 : std::min(v >> 16, last_y);
+      const int xi = interior ? u >> 16 : std::min<std::int32_t>(u >> 16, last_x);
+      const int yi = interior ? v >> 16 : std::min<std::int32_t>(v >> 16, last_y);
       const int fx = (u - (xi << 16)) >> 8;  // 0..256
       const int fy = (v - (yi << 16)) >> 8;
       const std::uint8_t* p = raw.data + yi * raw.stride + xi;

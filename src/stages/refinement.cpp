@@ -153,7 +153,8 @@ class Refiner {
     const Eigen::LDLT<Matrix6d> ldlt(H_);
     if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 1e-9) || weight < 6) return;
     const double s = static_cast<double>(params_.covariance_inflation) * sigma_;
-    out.covariance = s * s * ldlt.solve(Matrix6d::Identity());
+    // Column by column: Eigen solves for a whole matrix by blocks, on the heap where it cannot prove them small.
+    for (int i = 0; i < 6; ++i) out.covariance.col(i) = s * s * ldlt.solve(Vector6d(Vector6d::Unit(i)));
     out.covariance = (0.5 * (out.covariance + out.covariance.transpose())).eval();
     out.rms_px = static_cast<float>(std::sqrt(sum / weight));
     out.inliers = static_cast<std::uint16_t>(inliers);

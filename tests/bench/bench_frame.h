@@ -47,7 +47,6 @@ inline void WithPercentiles(benchmark::internal::Benchmark* b) {
 }
 
 void PrintStageTable(int frames);
-void PrintMemoryTable();
 
 }  // namespace wirepose::bench
 

@@ -85,7 +85,6 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   wirepose::bench::PrintStageTable(90);
-  wirepose::bench::PrintMemoryTable();
   std::printf("\n");
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();

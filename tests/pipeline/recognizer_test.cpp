@@ -74,11 +74,11 @@ TEST_F(RecognizerTest, FindsObjectsInRenderedKitchens) {
   constexpr std::uint64_t kLast = 203;
 #endif
   for (std::uint64_t seed = 201; seed <= kLast; ++seed) {
-    sim::VideoConfig config;
-    config.seed = seed;
-    config.samples_per_side = 2;
-    config.calibration = testing::GoldenCalibration();
-    const auto video = sim::KitchenVideo::Create(config, *targets);
+    sim::ScenarioSpec spec;
+    spec.seed = seed;
+    spec.samples = 9;
+    spec.camera.calibration = testing::GoldenCalibration();
+    const auto video = sim::ScenarioVideo::Create(spec, 0, *targets);
     ASSERT_TRUE(video);
     const sim::StereoShot shot = video->Shoot(0);
     ASSERT_EQ(Process({shot.left, shot.right}, result_), RecognizerError::kOk);
