@@ -51,9 +51,9 @@ void ReadSecurity(YamlSection section, std::optional<SecurityFiles>& out) {
   const struct {
     const char* key;
     std::string& file;
-  } keys[] = {{"identity_ca", files.identity_ca},       {"certificate", files.certificate},
-              {"private_key", files.private_key},       {"permissions_ca", files.permissions_ca},
-              {"governance", files.governance},         {"permissions", files.permissions}};
+  } keys[] = {{"identity_ca", files.identity_ca}, {"certificate", files.certificate},
+              {"private_key", files.private_key}, {"permissions_ca", files.permissions_ca},
+              {"governance", files.governance},   {"permissions", files.permissions}};
   std::size_t found = 0;
   for (const auto& [key, file] : keys) {
     std::filesystem::path path;

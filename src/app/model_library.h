@@ -12,13 +12,14 @@
 
 namespace wirepose::app {
 
-// Owns the model files' bytes: make it static. Two stores, so that the models in use stay until new ones are known to be
-// good. Not thread safe; call on the recognizer's thread.
+// Owns the model files' bytes: make it static. Two stores, so that the models in use stay until new ones are known to
+// be good. Not thread safe; call on the recognizer's thread.
 class ModelLibrary {
  public:
   explicit ModelLibrary(Recognizer& recognizer) : recognizer_(recognizer) {}
 
-  // Loads `paths` and gives all models to the recognizer. Throws WorkFailed with file and reason; then nothing is loaded.
+  // Loads `paths` and gives all models to the recognizer. Throws WorkFailed with file and reason; then nothing is
+  // loaded.
   void Load(std::vector<std::filesystem::path> paths);
 
   // The following return why they refuse, and then have changed nothing; empty: done.

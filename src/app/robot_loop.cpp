@@ -64,6 +64,7 @@ void RobotLoop::HandleFrame(hal::FrameLease lease) {
   timer_.FrameEnds();
   report_.sequence = lease->sequence;
   report_.capture_time = lease->capture_time;
+  if (error == RecognizerError::kOk) PublishImage(lease->left);
   lease.Release();
   if (error != RecognizerError::kOk) {
     health_.FrameFailed(report_.sequence, Describe(error));
@@ -79,6 +80,13 @@ void RobotLoop::PublishScene() {
   scene_.stamp = report_.stamp;
   FillScene(recognizer_, report_.result, scene_);
   publisher_.Publish(scene_);
+}
+
+void RobotLoop::PublishImage(const ImageView& left) {
+  if (!publisher_.ImageWanted()) return;
+  image_.stamp = report_.stamp;
+  FillImage(left, image_);
+  publisher_.Publish(image_);
 }
 
 void RobotLoop::HandleCommands() {

@@ -48,6 +48,7 @@ class RobotLoop {
   void HandleFrame(hal::FrameLease lease);
   void HandleCommands();
   void PublishScene();
+  void PublishImage(const ImageView& left);
   // False at the end of the feed.
   bool HandleCameraError(hal::CameraError error);
   void SendHealthIfDue();
@@ -62,6 +63,7 @@ class RobotLoop {
   StageTimer timer_;
   FrameReport report_;
   SceneReport scene_;
+  ImageReport image_;
   HealthMonitor::Clock::time_point waiting_since_;  // the last thing the camera did
   std::uint64_t frames_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "dds_idl/diagnostic_msgs.h"
+#include "dds_idl/sensor_msgs.h"
 #include "dds_idl/vision_msgs.h"
 #include "dds_idl/visualization_msgs.h"
 #include "dds_idl/wirepose.h"
@@ -12,8 +13,8 @@
 namespace wirepose {
 namespace {
 
-// Small buffers and stacks: one participant needs about 0.2 MB instead of Cyclone's 2.5. It calls out once a second, not
-// once in 30: peers whose lease ran out while the network was cut find each other again at once.
+// Small buffers and stacks: one participant needs about 0.2 MB instead of Cyclone's 2.5. It calls out once a second,
+// not once in 30: peers whose lease ran out while the network was cut find each other again at once.
 constexpr char kSmall[] =
     R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain Id="any">
 <General><MaxMessageSize>8 KiB</MaxMessageSize></General>
@@ -92,6 +93,8 @@ const TopicSpec& Spec(TopicId topic) {
        "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf"},
       {"diagnostics", "rt/diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, 1, 1, false,
        "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"},
+      {"image", "rt/wirepose/left/image_raw", &sensor_msgs_msg_dds__Image__desc, 1, 1, false,
+       "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"},
       {"command", "wirepose/command", &wirepose_Command_desc, 16, 16, false, nullptr},
       {"command_status", "wirepose/command_status", &wirepose_CommandStatus_desc, 16, 16, false, nullptr},
   };
@@ -114,7 +117,8 @@ Result<Bus, std::string> Bus::Open(const BusConfig& config) {
   // Somebody else in this process has opened the domain: its settings hold.
   const bool shared = domain == DDS_RETCODE_PRECONDITION_NOT_MET;
   if (domain < 0 && !shared) {
-    return unexpected(Failure(where, domain, "check CYCLONEDDS_URI, that the domain is 0 to 230, and the files of dds.security"));
+    return unexpected(
+        Failure(where, domain, "check CYCLONEDDS_URI, that the domain is 0 to 230, and the files of dds.security"));
   }
   DdsEntity owned_domain(shared ? 0 : domain);
   const dds_entity_t participant = dds_create_participant(config.domain, nullptr, nullptr);
@@ -137,8 +141,7 @@ Result<dds_entity_t, std::string> Bus::CreateWriter(TopicId id, SlotType* type) 
 
 Result<dds_entity_t, std::string> Bus::CreateReader(TopicId id, const dds_listener_t* listener) const {
   const TopicSettings& settings = topics_[static_cast<std::size_t>(id)];
-  const dds_entity_t topic =
-      dds_create_topic(participant(), Spec(id).type, settings.name.c_str(), nullptr, nullptr);
+  const dds_entity_t topic = dds_create_topic(participant(), Spec(id).type, settings.name.c_str(), nullptr, nullptr);
   const Qos qos = MakeQos(id, settings, false);
   return Created(topic < 0 ? topic : dds_create_reader(participant(), topic, qos.get(), listener), "reader", settings);
 }

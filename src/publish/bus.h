@@ -24,10 +24,11 @@ enum class TopicId : std::uint8_t {
   kHealth,         // once a second and on change
   kMarkers,        // visualization_msgs/MarkerArray for ROS 2
   kDiagnostics,    // diagnostic_msgs/DiagnosticArray for ROS 2
+  kImage,          // sensor_msgs/Image for ROS 2: the left camera's
   kCommand,        // to wireposed
   kCommandStatus,  // its answers
 };
-inline constexpr std::size_t kTopicCount = 7;
+inline constexpr std::size_t kTopicCount = 8;
 
 // What is fixed about a topic, and the defaults of what is not.
 struct TopicSpec {
@@ -45,7 +46,7 @@ const TopicSpec& Spec(TopicId topic);
 struct TopicSettings {
   std::string name;
   bool reliable = true;
-  std::int32_t depth = 1;                // keep-last: samples kept for a slow reader
+  std::int32_t depth = 1;                 // keep-last: samples kept for a slow reader
   std::chrono::milliseconds deadline{0};  // promised time from sample to sample; 0: none
 };
 using TopicTable = std::array<TopicSettings, kTopicCount>;

@@ -31,9 +31,9 @@ struct Command {
 };
 
 struct CommandAnswer {
-  Command command;         // what was asked
-  bool accepted = false;   // false: nothing has changed
-  FixedText<256> reason;   // why not
+  Command command;        // what was asked
+  bool accepted = false;  // false: nothing has changed
+  FixedText<256> reason;  // why not
   // What holds from now on.
   bool paused = false;
   ModelIds searched_ids;

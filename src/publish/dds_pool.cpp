@@ -1,5 +1,6 @@
 #include "publish/dds_pool.h"
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,11 +16,18 @@ constinit std::mutex g_mutex;
 constinit FixedHeap g_heap;
 constinit std::size_t g_size = kDefaultDdsPoolBytes;
 constinit bool g_used = false;
-alignas(FixedHeap::kAlignment) std::byte g_storage[kMaxDdsPoolBytes];
+constexpr std::size_t kPage = 4096;  // or a multiple, where pages are larger: then a little less is given back
+alignas(kPage) std::byte g_storage[kMaxDdsPoolBytes];
+static_assert(kMaxDdsPoolBytes % kPage == 0 && kMinDdsPoolBytes % kPage == 0);
 
 // The heap, made ready by its first user. The caller holds the mutex.
 FixedHeap& Heap() {
-  if (!g_used) g_heap.Reset({g_storage, g_size});
+  if (!g_used) {
+    g_heap.Reset({g_storage, g_size});
+    // Out of reach, the part that was not chosen costs no memory, also when all of the process is locked into it.
+    // It costs some where the system refuses; that is all.
+    (void)mprotect(g_storage + g_size, kMaxDdsPoolBytes - g_size, PROT_NONE);
+  }
   g_used = true;
   return g_heap;
 }
@@ -43,7 +51,7 @@ FixedHeap& Heap() {
 bool SetDdsPoolSize(std::size_t bytes) {
   const std::scoped_lock lock(g_mutex);
   if (g_used) return false;
-  g_size = std::clamp(bytes, kMinDdsPoolBytes, kMaxDdsPoolBytes);
+  g_size = std::clamp(bytes, kMinDdsPoolBytes, kMaxDdsPoolBytes) / kPage * kPage;
   return true;
 }
 

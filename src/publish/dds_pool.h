@@ -9,8 +9,8 @@
 
 namespace wirepose {
 
-// What the configuration may choose, and the default. 1 MiB serves a dozen peers; every participant, reader and writer in
-// the domain costs some (docs/dds.md). The array is part of the program, but only what is used is ever touched.
+// What the configuration may choose, and the default. 1 MiB serves a dozen peers; every participant, reader and writer
+// in the domain costs some (docs/dds.md). The array is part of the program; what is not chosen of it costs no memory.
 inline constexpr std::size_t kMaxDdsPoolBytes = std::size_t{8} << 20;
 inline constexpr std::size_t kMinDdsPoolBytes = std::size_t{256} << 10;
 inline constexpr std::size_t kDefaultDdsPoolBytes = std::size_t{1} << 20;

@@ -17,9 +17,9 @@ struct HeapUse {
   std::uint64_t allocations = 0;  // since the start
 };
 
-// Two-level segregated fit (Masmano, Ripoll, Crespo, Real: TLSF, ECRTS 2004): free blocks hang in lists by size class, 16
-// classes to each power of two; two bit maps find the first list that fits; neighbours that are free merge at once. So
-// the waste by rounding is at most 1/16 and memory that was freed serves every size again.
+// Two-level segregated fit (Masmano, Ripoll, Crespo, Real: TLSF, ECRTS 2004): free blocks hang in lists by size class,
+// 16 classes to each power of two; two bit maps find the first list that fits; neighbours that are free merge at once.
+// So the waste by rounding is at most 1/16 and memory that was freed serves every size again.
 //
 // The storage is the caller's and must outlive the heap. Not thread safe. Every call is O(1), but Resize copies.
 class FixedHeap {

@@ -13,8 +13,8 @@ namespace wirepose {
 // Keeps the newest kDepth items; the oldest that was not taken makes room for a new one. Storage in the object: kDepth
 // items wait, one is being written and one is being read.
 //
-// Threads: one thread puts, one takes. Put is wait-free: it never waits for the taker, however slow that is. Take begins
-// again when an item is replaced under its hands, so it may only be slow while the putter is fast.
+// Threads: one thread puts, one takes. Put is wait-free: it never waits for the taker, however slow that is. Take
+// begins again when an item is replaced under its hands, so it may only be slow while the putter is fast.
 template <typename T, std::size_t kDepth>
 class LatestRing {
   static_assert(kDepth > 0 && kDepth < 250);
@@ -40,8 +40,8 @@ class LatestRing {
     return old != kEmpty;
   }
 
-  // The oldest item, which stays valid until Release, and its number in the order of Put; nullptr when there is none. At
-  // most one may be held.
+  // The oldest item, which stays valid until Release, and its number in the order of Put; nullptr when there is none.
+  // At most one may be held.
   const T* Take(std::uint64_t& number) {
     for (;;) {
       std::size_t oldest = kDepth;

@@ -58,8 +58,8 @@ FixedVector<PoseMode, kMaxModes> ModesOf(const Detection& detection) {
   return modes;
 }
 
-void FillRosDetection(const Detection& detection, const ModelLabels& models,
-                      const std_msgs_msg_dds__Header_& header, vision_msgs_msg_dds__Detection3D_& out) {
+void FillRosDetection(const Detection& detection, const ModelLabels& models, const std_msgs_msg_dds__Header_& header,
+                      vision_msgs_msg_dds__Detection3D_& out) {
   const FixedText<32> name = ModelName(models, detection.model_id);
   const std::array<double, 36> covariance = RosCovariance(detection.covariance);
   out.header = header;

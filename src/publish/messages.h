@@ -6,10 +6,12 @@
 #include <string_view>
 
 #include "dds_idl/diagnostic_msgs.h"
+#include "dds_idl/sensor_msgs.h"
 #include "dds_idl/vision_msgs.h"
 #include "dds_idl/visualization_msgs.h"
 #include "dds_idl/wirepose.h"
 #include "publish/commands.h"
+#include "publish/image_report.h"
 #include "publish/reports.h"
 #include "publish/scene_report.h"
 
@@ -29,6 +31,7 @@ inline constexpr std::uint32_t kMaxRecognitionBytes = 12288;
 inline constexpr std::uint32_t kMaxHealthBytes = 4096;
 inline constexpr std::uint32_t kMaxMarkersBytes = 65536;
 inline constexpr std::uint32_t kMaxDiagnosticsBytes = 12288;
+inline constexpr std::uint32_t kMaxImageBytes = 307456;
 inline constexpr std::uint32_t kMaxCommandStatusBytes = 512;
 
 // The messages with the storage of their bounded sequences. They point into themselves, hence are
@@ -146,10 +149,13 @@ void FillMessage(const FrameReport& report, std::string_view frame_id, Recogniti
 // wirepose/health. `version` is the program's.
 void FillMessage(const HealthReport& report, std::string_view version, HealthMessage& message);
 
-// rt/wirepose/markers: for RViz and Foxglove. First a marker that removes those of the frame before. Namespaces: "lines"
-// (all 3D lines, grey), "wireframe", "line_set" and "label" with the object's number in the frame as id; an object's
-// three have one colour.
+// rt/wirepose/markers: for RViz and Foxglove. First a marker that removes those of the frame before. Namespaces:
+// "lines" (all 3D lines, grey), "wireframe", "line_set" and "label" with the object's number in the frame as id; an
+// object's three have one colour.
 void FillMessage(const SceneReport& scene, std::string_view frame_id, MarkersMessage& message);
+
+// rt/wirepose/left/image_raw, mono8. The message points into the report, which must outlive its use.
+void FillMessage(const ImageReport& image, std::string_view frame_id, sensor_msgs_msg_dds__Image_& message);
 
 // rt/diagnostics: four statuses, "wireposed: camera", "... recognition", "... bus" and "... models", with level and
 // values as robot monitors show them.

@@ -12,6 +12,11 @@ void Outbox::Offer(const SceneReport& scene) {
   ready_.release();
 }
 
+void Outbox::Offer(const ImageReport& image) {
+  images_.Put(image);
+  ready_.release();
+}
+
 void Outbox::Offer(const HealthReport& report) {
   health_.Put(report);
   ready_.release();
@@ -33,6 +38,11 @@ const FrameReport* Outbox::TakeFrame(std::uint64_t& dropped) {
 const SceneReport* Outbox::TakeScene() {
   std::uint64_t number = 0;
   return scenes_.Take(number);
+}
+
+const ImageReport* Outbox::TakeImage() {
+  std::uint64_t number = 0;
+  return images_.Take(number);
 }
 
 const HealthReport* Outbox::TakeHealth() {

@@ -8,6 +8,7 @@
 
 #include "base/spsc_queue.h"
 #include "publish/commands.h"
+#include "publish/image_report.h"
 #include "publish/latest_ring.h"
 #include "publish/reports.h"
 #include "publish/scene_report.h"
@@ -27,6 +28,7 @@ class Outbox {
 
   void Offer(const FrameReport& report);
   void Offer(const SceneReport& scene);
+  void Offer(const ImageReport& image);
   void Offer(const HealthReport& report);
   // False when kAnswers wait already.
   [[nodiscard]] bool Offer(const CommandAnswer& answer);
@@ -39,9 +41,11 @@ class Outbox {
   // reports were given up before this one, since the start.
   [[nodiscard]] const FrameReport* TakeFrame(std::uint64_t& dropped);
   [[nodiscard]] const SceneReport* TakeScene();
+  [[nodiscard]] const ImageReport* TakeImage();
   [[nodiscard]] const HealthReport* TakeHealth();
   void Release(const FrameReport* report) { frames_.Release(report); }
   void Release(const SceneReport* scene) { scenes_.Release(scene); }
+  void Release(const ImageReport* image) { images_.Release(image); }
   void Release(const HealthReport* report) { health_.Release(report); }
   [[nodiscard]] bool TakeAnswer(CommandAnswer& answer) { return answers_.try_pop(answer); }
 
@@ -54,6 +58,7 @@ class Outbox {
  private:
   LatestRing<FrameReport, kFrames> frames_;
   LatestRing<SceneReport, 1> scenes_;
+  LatestRing<ImageReport, 1> images_;
   LatestRing<HealthReport, 1> health_;
   SpscQueue<CommandAnswer, kAnswers> answers_;
   std::counting_semaphore<> ready_{0};

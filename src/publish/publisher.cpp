@@ -5,8 +5,8 @@
 namespace wirepose {
 namespace {
 
-constexpr TopicId kWritten[] = {TopicId::kDetections, TopicId::kRecognition, TopicId::kHealth,
-                                TopicId::kMarkers,    TopicId::kDiagnostics, TopicId::kCommandStatus};
+constexpr TopicId kWritten[] = {TopicId::kDetections,  TopicId::kRecognition, TopicId::kHealth,       TopicId::kMarkers,
+                                TopicId::kDiagnostics, TopicId::kImage,       TopicId::kCommandStatus};
 
 void WakeOnData(dds_entity_t, void* outbox) { static_cast<Outbox*>(outbox)->Wake(); }
 
@@ -23,6 +23,7 @@ Publisher::Publisher()
       health_type_(*Spec(TopicId::kHealth).type),
       markers_type_(*Spec(TopicId::kMarkers).type),
       diagnostics_type_(*Spec(TopicId::kDiagnostics).type),
+      image_type_(*Spec(TopicId::kImage).type),
       command_status_type_(*Spec(TopicId::kCommandStatus).type) {}
 
 SlotType& Publisher::TypeOf(TopicId topic) {
@@ -37,6 +38,8 @@ SlotType& Publisher::TypeOf(TopicId topic) {
       return *markers_type_;
     case TopicId::kDiagnostics:
       return *diagnostics_type_;
+    case TopicId::kImage:
+      return *image_type_;
     case TopicId::kCommandStatus:
     case TopicId::kCommand:
       break;
@@ -101,6 +104,7 @@ void Publisher::Run() {
 void Publisher::Drain() {
   SendFrames();
   SendScene();
+  SendImage();
   TakeCommands();
   SendAnswers();
   SendHealth();
@@ -117,6 +121,7 @@ void Publisher::SendFrames() {
     Write(TopicId::kRecognition, &recognition_.value);
   }
   scene_wanted_.store(Subscribers(writer(TopicId::kMarkers)) > 0, std::memory_order_relaxed);
+  image_wanted_.store(Subscribers(writer(TopicId::kImage)) > 0, std::memory_order_relaxed);
 }
 
 void Publisher::SendScene() {
@@ -125,6 +130,14 @@ void Publisher::SendScene() {
   FillMessage(*scene, config_.frame_id, markers_);
   outbox_.Release(scene);
   Write(TopicId::kMarkers, &markers_.value);
+}
+
+void Publisher::SendImage() {
+  const ImageReport* const image = outbox_.TakeImage();
+  if (image == nullptr) return;
+  FillMessage(*image, config_.frame_id, image_);
+  Write(TopicId::kImage, &image_);
+  outbox_.Release(image);
 }
 
 void Publisher::SendHealth() {

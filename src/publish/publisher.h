@@ -29,9 +29,9 @@ struct PublisherConfig {
 // The robot program's result sink and its ear. Messages, queue and the writers' memory are part of the object: make it
 // static.
 //
-// Threads: one thread owns it (Open, Publish, Answer, TakeCommand, Close); the counters may be read anywhere. No call but
-// Open and Close waits for the network: what the publisher's thread cannot send in time is given up, the oldest first,
-// and counted.
+// Threads: one thread owns it (Open, Publish, Answer, TakeCommand, Close); the counters may be read anywhere. No call
+// but Open and Close waits for the network: what the publisher's thread cannot send in time is given up, the oldest
+// first, and counted.
 class Publisher {
  public:
   Publisher();
@@ -48,8 +48,10 @@ class Publisher {
   // Also fills in what only the bus knows: pool and events.
   void Publish(const HealthReport& report) { outbox_.Offer(report); }
   void Publish(const SceneReport& scene) { outbox_.Offer(scene); }
-  // True while somebody subscribes to the markers: only then a scene need be gathered.
+  void Publish(const ImageReport& image) { outbox_.Offer(image); }
+  // True while somebody subscribes to the markers or to the image: only then a scene or a picture need be gathered.
   [[nodiscard]] bool SceneWanted() const { return scene_wanted_.load(std::memory_order_relaxed); }
+  [[nodiscard]] bool ImageWanted() const { return image_wanted_.load(std::memory_order_relaxed); }
 
   // The next command, in the order of arrival. Each must be answered, before the next one is taken.
   [[nodiscard]] bool TakeCommand(Command& command) { return commands_.try_pop(command); }
@@ -72,6 +74,7 @@ class Publisher {
   void Drain();
   void SendFrames();
   void SendScene();
+  void SendImage();
   void SendHealth();
   void SendAnswers();
   void TakeCommands();
@@ -89,6 +92,7 @@ class Publisher {
   StaticSlotType<kMaxHealthBytes, 4> health_type_;
   StaticSlotType<kMaxMarkersBytes, 4> markers_type_;
   StaticSlotType<kMaxDiagnosticsBytes, 4> diagnostics_type_;
+  StaticSlotType<kMaxImageBytes, 3> image_type_;
   StaticSlotType<kMaxCommandStatusBytes, 20> command_status_type_;
 
   // Of the publisher's thread.
@@ -98,13 +102,14 @@ class Publisher {
   HealthMessage health_;
   MarkersMessage markers_;
   DiagnosticsMessage diagnostics_;
+  sensor_msgs_msg_dds__Image_ image_{};
   CommandMessage command_;
   CommandStatusMessage command_status_;
   CommandAnswer answer_;
   BusEvents events_;
 
   std::atomic<std::uint64_t> write_errors_{0};
-  std::atomic<bool> scene_wanted_{false};
+  std::atomic<bool> scene_wanted_{false}, image_wanted_{false};
   std::atomic<bool> stop_{false};
   std::optional<Bus> bus_;  // goes before the types
   std::array<dds_entity_t, kTopicCount> writers_{};

@@ -8,8 +8,8 @@
 
 namespace wirepose {
 
-// A fragment of Cyclone's XML: authentication, access control and encryption by Cyclone's plug-ins, which are looked for
-// beside libddsc.
+// A fragment of Cyclone's XML: authentication, access control and encryption by Cyclone's plug-ins, which are looked
+// for beside libddsc.
 std::string SecuritySettings(const SecurityFiles& files);
 
 }  // namespace wirepose

@@ -37,9 +37,7 @@ void InitKey(const ddsi_sertype& type) {
 
 // What Cyclone calls. Names follow its tables of functions.
 struct SlotOperations {
-  static SlotType* Of(const ddsi_sertype* type) {
-    return reinterpret_cast<SlotType*>(const_cast<ddsi_sertype*>(type));
-  }
+  static SlotType* Of(const ddsi_sertype* type) { return reinterpret_cast<SlotType*>(const_cast<ddsi_sertype*>(type)); }
 
   static ddsi_serdata* FromSample(const ddsi_sertype* base, ddsi_serdata_kind kind, const void* sample) {
     SlotType* const type = Of(base);

@@ -21,9 +21,9 @@ struct SampleSlot {
   unsigned char* bytes = nullptr;
 };
 
-// Implements Cyclone's sertype interface, which is internal to Cyclone 0.10 and pinned by dds_idl/CMakeLists.txt. Samples
-// are the C structs of idlc, keyless types only, and are put on the wire as plain CDR (XCDR1, little-endian): what
-// Cyclone's own writer sends, byte for byte. The type can only write; readers use Cyclone's own.
+// Implements Cyclone's sertype interface, which is internal to Cyclone 0.10 and pinned by dds_idl/CMakeLists.txt.
+// Samples are the C structs of idlc, keyless types only, and are put on the wire as plain CDR (XCDR1, little-endian):
+// what Cyclone's own writer sends, byte for byte. The type can only write; readers use Cyclone's own.
 //
 // The object must outlive the topic, whose deletion gives back its slots. Threads: as a DDS writer's.
 class SlotType {

@@ -14,7 +14,8 @@ inline const std::string& LongText() {
 
 inline ModelLabels FullLabels() {
   ModelLabels labels;
-  for (std::uint32_t i = 0; i < kMaxModels; ++i) labels.push_back({100 + i, i, {LongText()}, Vector3::Zero(), Vector3::Zero(), true});
+  for (std::uint32_t i = 0; i < kMaxModels; ++i)
+    labels.push_back({100 + i, i, {LongText()}, Vector3::Zero(), Vector3::Zero(), true});
   return labels;
 }
 

@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
   if (!bus) return 1;
   dds_topic_descriptor_t type = wirepose_test_Garbage_desc;
   type.m_typename = Spec(TopicId::kCommand).type->m_typename;
-  const dds_entity_t topic = dds_create_topic(bus->participant(), &type, Spec(TopicId::kCommand).name, nullptr, nullptr);
+  const dds_entity_t topic =
+      dds_create_topic(bus->participant(), &type, Spec(TopicId::kCommand).name, nullptr, nullptr);
   dds_qos_t* const qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);

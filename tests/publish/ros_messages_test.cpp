@@ -66,7 +66,8 @@ TEST_F(MarkersTest, ShowObjectAndLines) {
   EXPECT_EQ(Marker(2).pose.position.x, T.t.x()) << "the wireframe is in the model's frame";
   EXPECT_EQ(Marker(3).pose.position.x, 0) << "the image lines are in the camera's";
   EXPECT_EQ(Marker(3).pose.orientation.w, 1);
-  EXPECT_EQ(std::memcmp(&Marker(2).color, &Marker(3).color, sizeof Marker(2).color), 0) << "a set has its object's colour";
+  EXPECT_EQ(std::memcmp(&Marker(2).color, &Marker(3).color, sizeof Marker(2).color), 0)
+      << "a set has its object's colour";
 }
 
 TEST_F(MarkersTest, EmptySceneClearsTheDisplay) {
@@ -232,6 +233,13 @@ TEST(MessageBounds, FullMessagesFitTheirSlots) {
   const auto status = std::make_unique<CommandStatusMessage>();
   FillMessage(test::FullAnswer(), *status);
 
+  const auto picture = std::make_unique<ImageReport>();
+  const std::vector<std::uint8_t> pixels(kMaxPixels);
+  FillImage({pixels.data(), kMaxImageWidth, kMaxImageHeight, kMaxImageWidth}, *picture);
+  const auto image = std::make_unique<sensor_msgs_msg_dds__Image_>();
+  FillMessage(*picture, test::LongText(), *image);
+  std::memset(image->encoding, 'x', sizeof image->encoding - 1);
+
   const struct {
     TopicId topic;
     const void* message;
@@ -243,6 +251,7 @@ TEST(MessageBounds, FullMessagesFitTheirSlots) {
       {TopicId::kMarkers, &markers->value, kMaxMarkersBytes},
       {TopicId::kDiagnostics, &diagnostics->value, kMaxDiagnosticsBytes},
       {TopicId::kCommandStatus, &status->value, kMaxCommandStatusBytes},
+      {TopicId::kImage, image.get(), kMaxImageBytes},
   };
   for (const auto& [topic, message, slot_bytes] : cases) {
     const std::uint32_t bytes = SerializedBytes(topic, message);

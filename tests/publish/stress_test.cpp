@@ -12,13 +12,14 @@
 namespace wirepose {
 namespace {
 
-using test::Process;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using test::Process;
 
-// Time that handing over a frame may take, on a machine that others use as well: a tenth of a frame. It is a copy.
-constexpr milliseconds kNoStall{3};
+// Handing over a frame is a copy of some 10 kB: microseconds. A network that held it up would do so for up to the 100 ms
+// that a reliable writer may block. Between them lies what a machine that others use as well takes from any thread.
+constexpr milliseconds kNoStall{20};
 // Peers that are silent for that long are forgotten, and their memory with them (DDS default lease).
 constexpr seconds kLease{10};
 
@@ -139,8 +140,8 @@ TEST_F(StressTest, RestartedPublisherIsFoundAgain) {
   EXPECT_LT(tallies.at("recognition")["longest_gap_ms"], 2000);
 }
 
-// From handing over a frame to the subscriber in another process, at 30 frames a second. Printed for docs/dds.md; the bound
-// only says that nothing waits for a timer.
+// From handing over a frame to the subscriber in another process, at 30 frames a second. Printed for docs/dds.md; the
+// bound only says that nothing waits for a timer.
 TEST_F(StressTest, LongLatency) {
   for (const std::size_t objects : {std::size_t{2}, kMaxDetections}) {
     const auto subscriber = Subscribe({"detections", "recognition"});
@@ -205,7 +206,8 @@ class MalformedTest : public StressTest {
 
   // A header that is right, and submessages that are not: kinds that exist, lengths that lie.
   std::vector<unsigned char> Packet() {
-    constexpr unsigned char kKinds[] = {0x01, 0x06, 0x07, 0x08, 0x09, 0x0c, 0x0d, 0x0e, 0x12, 0x13, 0x15, 0x16, 0x30, 0x33};
+    constexpr unsigned char kKinds[] = {0x01, 0x06, 0x07, 0x08, 0x09, 0x0c, 0x0d,
+                                        0x0e, 0x12, 0x13, 0x15, 0x16, 0x30, 0x33};
     std::vector<unsigned char> bytes = {'R', 'T', 'P', 'S', 2, 1, 1, 16};
     for (int i = 0; i < 12; ++i) bytes.push_back(Byte());
     for (unsigned submessages = 1 + random_() % 4; submessages > 0; --submessages) {

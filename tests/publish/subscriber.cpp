@@ -1,6 +1,8 @@
 // A subscriber as a process of its own, for tests: subscriber DOMAIN TOPIC... Prints "data" at the first sample and
-// "count N" every 100 ms in which samples came; once it gets SIGTERM, one line of JSON for each topic. Joins this machine
-// only, or with WIREPOSE_TEST_NETWORK set what CYCLONEDDS_URI says.
+// "count N" every 100 ms in which samples came; once it gets SIGTERM, one line of JSON for each topic. Joins this
+// machine only, or with WIREPOSE_TEST_NETWORK set what CYCLONEDDS_URI says.
+#include <sys/prctl.h>
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -41,11 +43,12 @@ struct Tally {
     return latencies_ns[(latencies_ns.size() - 1) * percent / 100];
   }
   void Print() {
-    std::printf("{\"topic\":\"%s\",\"samples\":%llu,\"last_sequence\":%llu,\"longest_gap_ms\":%.3f,\"p50_us\":%.1f,"
-                "\"p99_us\":%.1f,\"max_us\":%.1f}\n",
-                key.c_str(), static_cast<unsigned long long>(samples), static_cast<unsigned long long>(last_sequence),
-                1e-6 * static_cast<double>(longest_gap_ns), 1e-3 * static_cast<double>(Percentile(50)),
-                1e-3 * static_cast<double>(Percentile(99)), 1e-3 * static_cast<double>(Percentile(100)));
+    std::printf(
+        "{\"topic\":\"%s\",\"samples\":%llu,\"last_sequence\":%llu,\"longest_gap_ms\":%.3f,\"p50_us\":%.1f,"
+        "\"p99_us\":%.1f,\"max_us\":%.1f}\n",
+        key.c_str(), static_cast<unsigned long long>(samples), static_cast<unsigned long long>(last_sequence),
+        1e-6 * static_cast<double>(longest_gap_ns), 1e-3 * static_cast<double>(Percentile(50)),
+        1e-3 * static_cast<double>(Percentile(99)), 1e-3 * static_cast<double>(Percentile(100)));
   }
 };
 
@@ -98,6 +101,7 @@ class Listener {
 
 int Main(int argc, char** argv) {
   std::signal(SIGTERM, [](int) { g_stop = 1; });
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that dies leaves nobody behind
   BusConfig config;
   config.domain = static_cast<std::uint32_t>(std::atoi(argv[1]));
   config.loopback = std::getenv("WIREPOSE_TEST_NETWORK") == nullptr;

@@ -214,7 +214,8 @@ TEST_F(WireTest, ReportsArriveInOrder) {
 }
 
 TEST(Bus, DomainOutOfRangeIsRefusedWithAReason) {
-  const Result<Bus, std::string> bus = Bus::Open({.domain = 5000, .loopback = true, .topics = DefaultTopics(), .security = {}});
+  const Result<Bus, std::string> bus =
+      Bus::Open({.domain = 5000, .loopback = true, .topics = DefaultTopics(), .security = {}});
   ASSERT_FALSE(bus);
   EXPECT_NE(bus.error().find("5000"), std::string::npos) << bus.error();
 }

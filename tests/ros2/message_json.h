@@ -29,8 +29,7 @@ Json VectorJson(const Vector& v) {
 
 inline Json PoseJson(const geometry_msgs_msg_dds__Pose_& pose) {
   const auto& q = pose.orientation;
-  return {{"position", VectorJson(pose.position)},
-          {"orientation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
+  return {{"position", VectorJson(pose.position)}, {"orientation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
 }
 
 inline Json ColorJson(const std_msgs_msg_dds__ColorRGBA_& color) {
@@ -89,6 +88,16 @@ inline Json RosJson(const diagnostic_msgs_msg_dds__DiagnosticArray_& message) {
             {"values", EachOf(s.values, value)}};
   };
   return {{"header", HeaderJson(message.header)}, {"status", EachOf(message.status, status)}};
+}
+
+inline Json RosJson(const sensor_msgs_msg_dds__Image_& message) {
+  return {{"header", HeaderJson(message.header)},
+          {"height", message.height},
+          {"width", message.width},
+          {"encoding", message.encoding},
+          {"is_bigendian", message.is_bigendian},
+          {"step", message.step},
+          {"data", EachOf(message.data, [](std::uint8_t byte) { return byte; })}};
 }
 
 }  // namespace wirepose::test

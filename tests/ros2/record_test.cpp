@@ -26,8 +26,8 @@ class RecordTest : public RobotTest {
   }
 
   std::vector<std::string> Record(const std::vector<std::string>& more) const {
-    std::vector<std::string> command = {WIREPOSE_PROGRAM, "record",     "--out", (folder_ / "out.mcap").string(),
-                                        "--domain",       domain_,      "--loopback"};
+    std::vector<std::string> command = {WIREPOSE_PROGRAM, "record", "--out",     (folder_ / "out.mcap").string(),
+                                        "--domain",       domain_,  "--loopback"};
     command.insert(command.end(), more.begin(), more.end());
     return command;
   }
@@ -53,14 +53,14 @@ TEST_F(RecordTest, EveryTopicIsThereAndDecodes) {
   EXPECT_NE(record.Out().find("out.mcap: "), std::string::npos) << record.Out();
   const nlohmann::json file = Check();
   ASSERT_FALSE(file.is_null());
-  const std::map<std::string, std::string> schemas = {
-      {"/wirepose/detections", "vision_msgs/msg/Detection3DArray"},
-      {"/wirepose/markers", "visualization_msgs/msg/MarkerArray"},
-      {"/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"},
-      {"wirepose/recognition", "wirepose::Recognition"},
-      {"wirepose/health", "wirepose::Health"},
-      {"wirepose/command", "wirepose::Command"},
-      {"wirepose/command_status", "wirepose::CommandStatus"}};
+  EXPECT_FALSE(file["topics"].contains("/wirepose/left/image_raw")) << "only with --images";
+  const std::map<std::string, std::string> schemas = {{"/wirepose/detections", "vision_msgs/msg/Detection3DArray"},
+                                                      {"/wirepose/markers", "visualization_msgs/msg/MarkerArray"},
+                                                      {"/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"},
+                                                      {"wirepose/recognition", "wirepose::Recognition"},
+                                                      {"wirepose/health", "wirepose::Health"},
+                                                      {"wirepose/command", "wirepose::Command"},
+                                                      {"wirepose/command_status", "wirepose::CommandStatus"}};
   for (const auto& [topic, schema] : schemas) {
     ASSERT_TRUE(file["topics"].contains(topic)) << topic << " is missing: " << file;
     EXPECT_EQ(file["topics"][topic]["schema"], schema);
@@ -80,6 +80,15 @@ TEST_F(RecordTest, TopicsAndLengthCanBeChosen) {
   EXPECT_GE(file["topics"]["wirepose/recognition"]["messages"], 30);
 }
 
+TEST_F(RecordTest, ImagesComeWhenAskedFor) {
+  Process record(folder_, "record", Record({"--images", "--topic", "detections", "--frames", "20"}));
+  ASSERT_EQ(record.Wait(), 0) << record.Err();
+  const nlohmann::json file = Check();
+  EXPECT_EQ(file["topics"].size(), 2u);
+  EXPECT_EQ(file["topics"]["/wirepose/left/image_raw"]["schema"], "sensor_msgs/msg/Image");
+  EXPECT_GE(file["topics"]["/wirepose/left/image_raw"]["messages"], 10);
+}
+
 TEST_F(RecordTest, FailuresHaveOneLine) {
   robot_->Signal(SIGTERM);
   robot_->Wait();
@@ -90,7 +99,8 @@ TEST_F(RecordTest, FailuresHaveOneLine) {
   nowhere[3] = "/no/such/folder/out.mcap";
   Process unwritable(folder_, "unwritable", nowhere);
   EXPECT_EQ(unwritable.Wait(), 1);
-  EXPECT_NE(unwritable.Err().find("/no/such/folder/out.mcap: cannot be written"), std::string::npos) << unwritable.Err();
+  EXPECT_NE(unwritable.Err().find("/no/such/folder/out.mcap: cannot be written"), std::string::npos)
+      << unwritable.Err();
 }
 
 }  // namespace

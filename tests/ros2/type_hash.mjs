@@ -68,6 +68,7 @@ for (const [type, hash] of Object.entries(known)) {
     process.exit(1);
   }
 }
-for (const type of ["vision_msgs/Detection3DArray", "visualization_msgs/MarkerArray", "diagnostic_msgs/DiagnosticArray"]) {
+for (const type of ["vision_msgs/Detection3DArray", "visualization_msgs/MarkerArray", "diagnostic_msgs/DiagnosticArray",
+                    "sensor_msgs/Image"]) {
   console.log(`${type} ${typeHash(type)}`);
 }

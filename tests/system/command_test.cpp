@@ -46,8 +46,8 @@ class CommandTest : public RobotTest {
   }
   void BuildModel(const std::string& name, int id) {
     Process build(folder_, "build",
-                  {WIREPOSE_PROGRAM, "model", "build", WIREPOSE_MESH, "--id", std::to_string(id), "--name", name, "--out",
-                   (folder_ / "models" / (name + ".wpm")).string()});
+                  {WIREPOSE_PROGRAM, "model", "build", WIREPOSE_MESH, "--id", std::to_string(id), "--name", name,
+                   "--out", (folder_ / "models" / (name + ".wpm")).string()});
     ASSERT_EQ(build.Wait(), 0) << build.Err();
   }
 
@@ -140,8 +140,9 @@ TEST_F(CommandTest, NamesOfTopicsComeFromTheConfiguration) {
       "    detections: { name: rt/robot1/objects, reliable: false, depth: 1 }\n"
       "    recognition: { name: robot1/recognition, deadline_ms: 500 }\nmodels: [models]\n");
   Process other(folder_, "other", Robot(config));
-  Process detections(folder_, "detections",
-                     Watch({"--topic", "detections", "--once", "--name", "detections=rt/robot1/objects", "--best-effort"}));
+  Process detections(
+      folder_, "detections",
+      Watch({"--topic", "detections", "--once", "--name", "detections=rt/robot1/objects", "--best-effort"}));
   EXPECT_EQ(detections.Wait(), 0) << detections.Err();
   EXPECT_EQ(Json::parse(detections.OutLines()[0])["header"]["frame_id"], "eye");
   Process recognition(folder_, "recognition",
@@ -149,8 +150,9 @@ TEST_F(CommandTest, NamesOfTopicsComeFromTheConfiguration) {
   EXPECT_EQ(recognition.Wait(), 0) << recognition.Err();
   const Json message = Json::parse(recognition.OutLines()[0]);
   EXPECT_EQ(message["stamp_ns"], message["capture_time_ns"]);
-  Process reliable(folder_, "reliable", Watch({"--topic", "detections", "--once", "--timeout", "1.5", "--name",
-                                               "detections=rt/robot1/objects"}));
+  Process reliable(
+      folder_, "reliable",
+      Watch({"--topic", "detections", "--once", "--timeout", "1.5", "--name", "detections=rt/robot1/objects"}));
   EXPECT_EQ(reliable.Wait(), 1);
   EXPECT_NE(reliable.Err().find("--best-effort"), std::string::npos) << reliable.Err();
 }
@@ -166,7 +168,8 @@ TEST(CommandHandler, UnknownActionsAreRefused) {
     command.request_id = 5;
     const CommandAnswer answer = handler.Execute(command);
     EXPECT_FALSE(answer.accepted);
-    EXPECT_NE(std::string(std::string_view(answer.reason)).find("no action " + std::to_string(action)), std::string::npos);
+    EXPECT_NE(std::string(std::string_view(answer.reason)).find("no action " + std::to_string(action)),
+              std::string::npos);
     EXPECT_EQ(answer.command.request_id, 5u);
   }
   EXPECT_FALSE(handler.paused());

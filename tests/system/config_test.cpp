@@ -136,11 +136,13 @@ dds:
 
 TEST_F(ConfigTest, SecurityNeedsAllItsFiles) {
   const std::string file = file_.string();
-  EXPECT_NE(Refusal("dds:\n  security: { governance: nowhere.p7s }\n").find(":2: dds.security.governance: no such file"),
-            std::string::npos);
+  EXPECT_NE(
+      Refusal("dds:\n  security: { governance: nowhere.p7s }\n").find(":2: dds.security.governance: no such file"),
+      std::string::npos);
   EXPECT_NE(Refusal("dds:\n  security: { governance: " + file + " }\n").find("needs all six files"), std::string::npos);
-  const Config config = Load("dds:\n  security: { identity_ca: " + file + ", certificate: " + file + ", private_key: " +
-                             file + ", permissions_ca: " + file + ", governance: " + file + ", permissions: " + file + " }\n");
+  const Config config =
+      Load("dds:\n  security: { identity_ca: " + file + ", certificate: " + file + ", private_key: " + file +
+           ", permissions_ca: " + file + ", governance: " + file + ", permissions: " + file + " }\n");
   ASSERT_TRUE(config.dds.bus.security);
   EXPECT_EQ(config.dds.bus.security->permissions, file);
   EXPECT_EQ(config.dds.pool_bytes, kDefaultSecuredDdsPoolBytes);

@@ -18,7 +18,8 @@ TEST_F(RobotTest, ExampleSubscriberBuildsListensAndCommands) {
   const std::vector<std::string> environment = {
       "ROS_DOMAIN_ID=" + domain_,
       "CYCLONEDDS_URI=<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" multicast=\"false\"/>"
-      "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex>"
+      "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</"
+      "ParticipantIndex>"
       "<Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>"};
   Process good(folder_, "good", {build + "/wirepose_subscriber", "3", "1"}, environment);
   EXPECT_EQ(good.Wait(), 0) << good.Err() << robot.Err();

@@ -77,8 +77,8 @@ TEST_F(NetworkTest, LongLossAndACutAreSurvived) {
       "dds: { domain: " +
       domain_ + " }\nmodels: [parcel_box.wpm]\n");
   const auto robot = On("a", "robot", Robot(config));
-  const auto health = On("a", "health",
-                         {WIREPOSE_PROGRAM, "watch", "--json", "--topic", "health", "--domain", domain_, "--timeout", "0"});
+  const auto health = On(
+      "a", "health", {WIREPOSE_PROGRAM, "watch", "--json", "--topic", "health", "--domain", domain_, "--timeout", "0"});
   const auto subscriber = On("b", "subscriber", {WIREPOSE_TEST_SUBSCRIBER, domain_, "recognition"});
   ASSERT_TRUE(WaitUntil([&] { return Count(*subscriber) > 0; }, seconds(20))) << robot->Err() << subscriber->Err();
   ASSERT_TRUE(WaitUntil([&] { return !LastLine(*health).is_null(); }, seconds(20))) << health->Err();

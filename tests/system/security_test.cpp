@@ -33,10 +33,10 @@ class SecurityTest : public RobotTest {
     return WriteConfig(
         "camera:\n  backend: replay\n  replay: { data_set: data, loop: true, frame_rate_hz: 25 }\n"
         "dds:\n  domain: " +
-        domain_ + "\n  loopback: true\n  security:\n    identity_ca: " + own + "identity_ca.pem\n    certificate: " + own +
-        "certificate.pem\n    private_key: " + own + "key.pem\n    permissions_ca: " + own +
-        "permissions_ca.pem\n    governance: " + own + "governance.p7s\n    permissions: " + own +
-        "permissions.p7s\nmodels: [parcel_box.wpm]\n");
+        domain_ + "\n  loopback: true\n  security:\n    identity_ca: " + own +
+        "identity_ca.pem\n    certificate: " + own + "certificate.pem\n    private_key: " + own +
+        "key.pem\n    permissions_ca: " + own + "permissions_ca.pem\n    governance: " + own +
+        "governance.p7s\n    permissions: " + own + "permissions.p7s\nmodels: [parcel_box.wpm]\n");
   }
   [[nodiscard]] std::string Folder(const std::string& participant, const std::string& authorities = "security") const {
     return (folder_ / authorities / participant).string();
@@ -51,8 +51,8 @@ class SecurityTest : public RobotTest {
   }
   // Status of `wirepose command pause`.
   int Pause(const std::vector<std::string>& security, const std::string& timeout_s) {
-    std::vector<std::string> command = {WIREPOSE_PROGRAM, "command", "pause", "--json", "--domain", domain_,
-                                        "--loopback",     "--timeout", timeout_s};
+    std::vector<std::string> command = {WIREPOSE_PROGRAM, "command",    "pause",     "--json", "--domain",
+                                        domain_,          "--loopback", "--timeout", timeout_s};
     command.insert(command.end(), security.begin(), security.end());
     Process process(folder_, "command", command);
     return process.Wait().value_or(-1);

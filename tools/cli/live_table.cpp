@@ -24,9 +24,10 @@ std::string RowText(const wirepose_Detection& d, std::uint32_t modes, double age
   const auto& q = d.pose.orientation_xyzw;
   const double angle_deg = 2 * std::acos(std::clamp(q[3], -1.0, 1.0)) * 180 / 3.14159265358979323846;
   const std::string track = d.track_id == 0 ? "-" : std::to_string(d.track_id);
-  return fmt::format("{:<20.20} {:>4} {:>6} {:>8.3f} {:>8.3f} {:>8.3f} {:>7.1f} {:>7.1f} {:>7.2f} {:>6.3f} {:>5.2f} {:>5} {:>5.1f}",
-                     d.name, d.model_id, track, p[0], p[1], p[2], angle_deg, 1e3 * PositionSigma(d.covariance),
-                     RotationSigma_deg(d.covariance), d.score, d.visible_fraction, modes, age_s);
+  return fmt::format(
+      "{:<20.20} {:>4} {:>6} {:>8.3f} {:>8.3f} {:>8.3f} {:>7.1f} {:>7.1f} {:>7.2f} {:>6.3f} {:>5.2f} {:>5} {:>5.1f}",
+      d.name, d.model_id, track, p[0], p[1], p[2], angle_deg, 1e3 * PositionSigma(d.covariance),
+      RotationSigma_deg(d.covariance), d.score, d.visible_fraction, modes, age_s);
 }
 
 }  // namespace
@@ -91,10 +92,10 @@ std::string LiveTable::Draw(Time now, std::size_t width) const {
                                          ? fmt::format(" (silent for {:.0f} s)", Seconds(now - health_seen_))
                                          : ""),
               width);
-  text += Cut(fmt::format("{:<20} {:>4} {:>6} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>6} {:>5} {:>5} {:>5}", "object",
-                          "id", "track", "x m", "y m", "z m", "turn", "+-mm", "+-deg", "score", "seen", "modes",
-                          "age s"),
-              width);
+  text +=
+      Cut(fmt::format("{:<20} {:>4} {:>6} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>6} {:>5} {:>5} {:>5}", "object", "id",
+                      "track", "x m", "y m", "z m", "turn", "+-mm", "+-deg", "score", "seen", "modes", "age s"),
+          width);
   for (const auto& [key, row] : rows_) {
     if (now - row.seen > kForget) continue;
     text += Cut(RowText(row.detection, row.modes, Seconds(now - row.seen)), width);

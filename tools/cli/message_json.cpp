@@ -118,25 +118,24 @@ Json ToJson(const wirepose_Health& message) {
             {"commands_accepted", message.events.commands_accepted},
             {"commands_refused", message.events.commands_refused}}},
           {"models", Each(message.models, [](const wirepose_ModelStatus& model) {
-             return Json{{"id", model.id}, {"name", model.name}, {"checksum", model.checksum}, {"searched", model.searched}};
+             return Json{
+                 {"id", model.id}, {"name", model.name}, {"checksum", model.checksum}, {"searched", model.searched}};
            })}};
 }
 
 Json ToJson(const wirepose_CommandStatus& message) {
   const wirepose_Region& region = message.region;
-  return {{"topic", "command_status"},
-          {"sender", message.sender},
-          {"request_id", message.request_id},
-          {"action", ActionName(message.action)},
-          {"accepted", message.accepted},
-          {"reason", message.reason},
-          {"paused", message.paused},
-          {"searched_ids", Each(message.searched_ids, [](std::uint32_t id) { return id; })},
-          {"region",
-           {{"x_px", region.x_px},
-            {"y_px", region.y_px},
-            {"width_px", region.width_px},
-            {"height_px", region.height_px}}}};
+  return {
+      {"topic", "command_status"},
+      {"sender", message.sender},
+      {"request_id", message.request_id},
+      {"action", ActionName(message.action)},
+      {"accepted", message.accepted},
+      {"reason", message.reason},
+      {"paused", message.paused},
+      {"searched_ids", Each(message.searched_ids, [](std::uint32_t id) { return id; })},
+      {"region",
+       {{"x_px", region.x_px}, {"y_px", region.y_px}, {"width_px", region.width_px}, {"height_px", region.height_px}}}};
 }
 
 Json ToJson(const diagnostic_msgs_msg_dds__DiagnosticArray_& message) {

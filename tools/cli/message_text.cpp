@@ -93,7 +93,8 @@ std::string ToText(const wirepose_Health& message) {
       "health: {}, wireposed {}, up {:.1f} s, camera {}: {}\n"
       "  frames: {} good, {} missing, {} damaged, {} not synchronous, {} late, {} failed; "
       "results dropped {}, write errors {}\n"
-      "  bus: {} subscribers, {} deadlines missed, {} incompatible, commands {} accepted {} refused; pool {} of {} KiB, "
+      "  bus: {} subscribers, {} deadlines missed, {} incompatible, commands {} accepted {} refused; pool {} of {} "
+      "KiB, "
       "most {}\n",
       StateName(message.state), message.version, 1e-9 * static_cast<double>(message.uptime_ns), message.camera,
       message.camera_status, f.good, f.missing, f.damaged, f.not_synchronous, f.late, f.failed, message.results_dropped,
@@ -130,10 +131,9 @@ const char* ActionName(std::uint8_t action) {
 }
 
 std::string ToText(const wirepose_CommandStatus& message) {
-  std::string text =
-      fmt::format("{} (request {} of {}): {}{}\n  now {}, models", ActionName(message.action), message.request_id,
-                  message.sender, message.accepted ? "accepted" : "refused: ", message.reason,
-                  message.paused ? "paused" : "not paused");
+  std::string text = fmt::format(
+      "{} (request {} of {}): {}{}\n  now {}, models", ActionName(message.action), message.request_id, message.sender,
+      message.accepted ? "accepted" : "refused: ", message.reason, message.paused ? "paused" : "not paused");
   for (const std::uint32_t id : Elements(message.searched_ids)) text += fmt::format(" {}", id);
   const wirepose_Region& region = message.region;
   if (region.width_px != 0) {

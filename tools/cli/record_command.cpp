@@ -22,7 +22,8 @@ using Clock = std::chrono::steady_clock;
 struct RecordOptions {
   BusOptions bus;
   std::string out;
-  std::vector<std::string> topics;  // keys; empty: all
+  std::vector<std::string> topics;  // keys; empty: all but the image
+  bool images = false;
   double duration_s = 0;
   std::uint64_t frames = 0;
 };
@@ -44,7 +45,9 @@ struct Track {
 void Write(ddsi_serdata* data, const dds_sample_info_t& info, const Track& track, record::McapWriter& writer) {
   ddsrt_iovec_t bytes{};
   ddsi_serdata* const reference = ddsi_serdata_to_ser_ref(data, 0, ddsi_serdata_size(data), &bytes);
-  const auto written = writer.Write({track.channel, Now_ns(), static_cast<std::uint64_t>(info.source_timestamp),
+  const auto written = writer.Write({track.channel,
+                                     Now_ns(),
+                                     static_cast<std::uint64_t>(info.source_timestamp),
                                      {static_cast<const unsigned char*>(bytes.iov_base), bytes.iov_len}});
   ddsi_serdata_to_ser_unref(reference, &bytes);
   if (!written) throw WorkFailed(written.error());
@@ -72,8 +75,11 @@ std::vector<Track> Subscribe(const RecordOptions& options, const Bus& bus, recor
   for (std::size_t i = 0; i < kTopicCount; ++i) {
     const auto topic = static_cast<TopicId>(i);
     const auto& wanted = options.topics;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), Spec(topic).key) == wanted.end()) continue;
-    tracks.push_back({topic, OpenReader(bus, topic), writer.AddChannel(record::ChannelOf(topic, config.topics[i].name))});
+    const bool named = std::find(wanted.begin(), wanted.end(), Spec(topic).key) != wanted.end();
+    const bool image = topic == TopicId::kImage;
+    if (!named && !(image ? options.images : wanted.empty())) continue;
+    tracks.push_back(
+        {topic, OpenReader(bus, topic), writer.AddChannel(record::ChannelOf(topic, config.topics[i].name))});
   }
   return tracks;
 }
@@ -105,9 +111,10 @@ void Record(const RecordOptions& options) {
   }
   if (const auto finished = writer->Finish(); !finished) throw WorkFailed(finished.error());
   if (writer->messages() == 0) {
-    throw WorkFailed(fmt::format("{}: nothing arrived on {}; is wireposed running with the same domain, loopback "
-                                 "setting and topic names?",
-                                 options.out, Where(options.bus)));
+    throw WorkFailed(
+        fmt::format("{}: nothing arrived on {}; is wireposed running with the same domain, loopback "
+                    "setting and topic names?",
+                    options.out, Where(options.bus)));
   }
   std::string summary;
   for (const Track& track : tracks) summary += fmt::format(" {} {}", Spec(track.topic).key, track.messages);
@@ -123,8 +130,9 @@ void AddRecordCommand(CLI::App& app) {
   command->add_option("--out", options->out, "file to write, .mcap; overwritten")->required();
   std::vector<std::string> keys;
   for (std::size_t i = 0; i < kTopicCount; ++i) keys.emplace_back(Spec(static_cast<TopicId>(i)).key);
-  command->add_option("--topic", options->topics, "only this one; may be repeated; default: all")
+  command->add_option("--topic", options->topics, "only this one; may be repeated; default: all but the image")
       ->check(CLI::IsMember(keys));
+  command->add_flag("--images", options->images, "the left camera's image as well: 9 MB a second at 640x480 and 30 Hz");
   command->add_option("--duration", options->duration_s, "end after that many seconds; 0: never")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--frames", options->frames, "end after that many frames; 0: never");

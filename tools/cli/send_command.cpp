@@ -26,9 +26,10 @@ struct SendOptions {
 };
 
 [[noreturn]] void FailForSilence(const SendOptions& options, const char* what) {
-  throw WorkFailed(fmt::format("{} for {} s on {}; is wireposed running with the same domain, loopback setting and topic "
-                               "names, and do its security permissions allow commands?",
-                               what, options.timeout_s, Where(options.bus)));
+  throw WorkFailed(
+      fmt::format("{} for {} s on {}; is wireposed running with the same domain, loopback setting and topic "
+                  "names, and do its security permissions allow commands?",
+                  what, options.timeout_s, Where(options.bus)));
 }
 
 // Both ways must be open before the command goes out: the answer is not kept for who comes late.

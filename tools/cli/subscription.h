@@ -11,8 +11,8 @@ namespace wirepose::cli {
 
 // What happened to a subscription since it was last asked.
 struct SubscriptionEvents {
-  std::uint32_t publishers = 0;       // matched now
-  bool liveliness_changed = false;    // a publisher came or was lost
+  std::uint32_t publishers = 0;        // matched now
+  bool liveliness_changed = false;     // a publisher came or was lost
   std::uint32_t deadlines_missed = 0;  // new ones
   bool incompatible = false;           // a publisher offers less than we ask for
 };

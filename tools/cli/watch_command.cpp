@@ -100,10 +100,10 @@ std::vector<std::unique_ptr<Printer>> Subscribe(const Bus& bus, const std::strin
 }
 
 [[noreturn]] void FailForSilence(const WatchOptions& options, bool incompatible) {
-  throw WorkFailed(fmt::format(
-      "nothing arrived for {} s on {}; {}", options.timeout_s, Where(options.bus),
-      incompatible ? "wireposed offers less than was asked for: try --best-effort"
-                   : "is wireposed running with the same domain, loopback setting and topic names?"));
+  throw WorkFailed(fmt::format("nothing arrived for {} s on {}; {}", options.timeout_s, Where(options.bus),
+                               incompatible
+                                   ? "wireposed offers less than was asked for: try --best-effort"
+                                   : "is wireposed running with the same domain, loopback setting and topic names?"));
 }
 
 void PrintMessages(const WatchOptions& options) {

@@ -58,12 +58,9 @@ Result<void, std::string> McapWriter::Status() const {
 std::uint16_t McapWriter::AddChannel(const McapChannel& channel) {
   const auto id = static_cast<std::uint16_t>(channels_.size() + 1);  // 0 stands for no schema
   ChannelState state;
-  state.schema_record = Record(kSchema, Bytes()
-                                            .Add(id)
-                                            .AddText(channel.schema_name)
-                                            .AddText(channel.schema_encoding)
-                                            .AddText(channel.schema)
-                                            .text());
+  state.schema_record = Record(
+      kSchema,
+      Bytes().Add(id).AddText(channel.schema_name).AddText(channel.schema_encoding).AddText(channel.schema).text());
   state.channel_record =
       Record(kChannel, Bytes().Add(id).Add(id).AddText(channel.topic).AddText("cdr").Add(std::uint32_t{0}).text());
   Put(state.schema_record);
@@ -81,13 +78,9 @@ Result<void, std::string> McapWriter::Write(const McapMessage& message) {
   last_ns_ = std::max(last_ns_, time);
   channel.index.emplace_back(time, chunk_.text().size());
   const std::string data(reinterpret_cast<const char*>(message.data.data()), message.data.size());
-  chunk_.AddRaw(Record(kMessage, Bytes()
-                                     .Add(message.channel)
-                                     .Add(channel.sequence++)
-                                     .Add(time)
-                                     .Add(message.publish_time_ns)
-                                     .AddRaw(data)
-                                     .text()));
+  chunk_.AddRaw(Record(
+      kMessage,
+      Bytes().Add(message.channel).Add(channel.sequence++).Add(time).Add(message.publish_time_ns).AddRaw(data).text()));
   ++channel.count;
   ++messages_;
   if (chunk_.text().size() >= kChunkBytes) EndChunk();
@@ -143,9 +136,9 @@ void McapWriter::WriteSummary() {
   Bytes summary, offsets;
   const auto group = [&](std::uint8_t opcode, const std::string& records) {
     if (records.empty()) return;
-    offsets.AddRaw(Record(
-        kSummaryOffset,
-        Bytes().Add(opcode).Add(start + summary.text().size()).Add(std::uint64_t{records.size()}).text()));
+    offsets.AddRaw(
+        Record(kSummaryOffset,
+               Bytes().Add(opcode).Add(start + summary.text().size()).Add(std::uint64_t{records.size()}).text()));
     summary.AddRaw(records);
   };
   std::string schemas, channels, chunk_indexes;

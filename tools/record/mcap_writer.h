@@ -23,13 +23,13 @@ struct McapChannel {
 
 struct McapMessage {
   std::uint16_t channel = 0;
-  std::uint64_t log_time_ns = 0;      // when it was received
-  std::uint64_t publish_time_ns = 0;  // when it was sent
+  std::uint64_t log_time_ns = 0;        // when it was received
+  std::uint64_t publish_time_ns = 0;    // when it was sent
   std::span<const unsigned char> data;  // CDR, encapsulation header first
 };
 
-// A file that was not finished holds its whole chunks, but no index: readers that stream still understand it. Not thread
-// safe. Memory: one chunk, and 16 bytes a message of it.
+// A file that was not finished holds its whole chunks, but no index: readers that stream still understand it. Not
+// thread safe. Memory: one chunk, and 16 bytes a message of it.
 class McapWriter {
  public:
   // Overwrites the file. Errors name it.

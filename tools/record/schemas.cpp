@@ -28,7 +28,11 @@ constexpr Definition kDetections[] = {
     {"vision_msgs/ObjectHypothesis", "string class_id\nfloat64 score\n"},
     {"vision_msgs/BoundingBox3D", "geometry_msgs/Pose center\ngeometry_msgs/Vector3 size\n"},
     {"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
-    kHeader, kPose, kPoint, kQuaternion, kVector3};
+    kHeader,
+    kPose,
+    kPoint,
+    kQuaternion,
+    kVector3};
 
 constexpr Definition kMarkers[] = {
     {"visualization_msgs/MarkerArray", "visualization_msgs/Marker[] markers\n"},
@@ -42,13 +46,23 @@ constexpr Definition kMarkers[] = {
     {"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
     {"sensor_msgs/CompressedImage", "std_msgs/Header header\nstring format\nuint8[] data\n"},
     {"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"},
-    kHeader, kPose, kPoint, kQuaternion, kVector3};
+    kHeader,
+    kPose,
+    kPoint,
+    kQuaternion,
+    kVector3};
 
 constexpr Definition kDiagnostics[] = {
     {"diagnostic_msgs/DiagnosticArray", "std_msgs/Header header\ndiagnostic_msgs/DiagnosticStatus[] status\n"},
     {"diagnostic_msgs/DiagnosticStatus",
      "byte level\nstring name\nstring message\nstring hardware_id\ndiagnostic_msgs/KeyValue[] values\n"},
     {"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
+    kHeader};
+
+constexpr Definition kImage[] = {
+    {"sensor_msgs/Image",
+     "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\n"
+     "uint8[] data\n"},
     kHeader};
 
 // The first definition is the message's own; those it holds follow, as MCAP's ros2msg encoding wants it.
@@ -81,6 +95,8 @@ McapChannel ChannelOf(TopicId topic, const std::string& name) {
       return RosChannel(name, kMarkers);
     case TopicId::kDiagnostics:
       return RosChannel(name, kDiagnostics);
+    case TopicId::kImage:
+      return RosChannel(name, kImage);
     default:
       return {name, Spec(topic).type->m_typename, "omgidl", kWireposeIdl};
   }
