@@ -34,6 +34,9 @@ class KeepBest {
     std::push_heap(items_.begin(), items_.end(), Better{});
   }
 
+  // Counts elements that were given up elsewhere on their way to this list.
+  void CountDropped(std::uint32_t count) { dropped_ += count; }
+
   // True when `value` would be kept: lets callers skip the work of making it.
   [[nodiscard]] bool WouldKeep(const T& value) const {
     return !items_.full() || Better{}(value, items_.front());
