@@ -79,7 +79,17 @@ RayScene::Hit RayScene::Intersect(const Vector3& origin, const Vector3& directio
   rtcInitIntersectContext(&context);
   rtcIntersect1(all_, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  return {static_cast<int>(query.hit.geomID), query.ray.tfar};
+  return {static_cast<int>(query.hit.geomID), query.ray.tfar, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}};
+}
+
+bool RayScene::IsHidden(const Vector3& origin, const Vector3& direction) const {
+  constexpr float kShort = 0.9999F;  // of the way: what is looked at does not hide itself
+  RTCRay ray = MakeRay(origin, direction);
+  ray.tfar = kShort;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(all_, &context, &ray);
+  return ray.tfar < 0;
 }
 
 bool RayScene::MeetsAlone(int instance, const Vector3& origin, const Vector3& direction) const {

@@ -26,9 +26,12 @@ class RayScene {
   struct Hit {
     int instance = kNothing;
     float t = 0;
+    Vector3 normal = Vector3::Zero();  // of any length, to either side
   };
   // The nearest surface along one ray.
   [[nodiscard]] Hit Intersect(const Vector3& origin, const Vector3& direction) const;
+  // Is there anything between the origin and origin + direction?
+  [[nodiscard]] bool IsHidden(const Vector3& origin, const Vector3& direction) const;
   // Does the ray meet this instance when nothing else is there?
   [[nodiscard]] bool MeetsAlone(int instance, const Vector3& origin, const Vector3& direction) const;
 

@@ -1,5 +1,5 @@
-// From a scene to the light that falls on one sensor: ray tracing with direct light, soft shadows
-// and a blurring lens.
+// From a scene to the light that falls on one sensor: ray tracing with direct and once reflected
+// light, soft shadows, gloss, a moving camera and a blurring lens.
 #ifndef WIREPOSE_SIM_RENDERER_H_
 #define WIREPOSE_SIM_RENDERER_H_
 
@@ -19,12 +19,20 @@ struct Camera {
   // Standard deviation of the lens's Gaussian point spread, px; the pixel's own square comes on
   // top. At most 2.
   double psf_sigma_px = 0.5;
+  double vignetting = 0;  // share of the light that is lost in the corners, 0..0.9
+
+  // Motion during the exposure, in the world; T_world_camera is the pose in its middle.
+  double exposure_s = 0;
+  Vector3d velocity = Vector3d::Zero();       // m/s
+  Vector3d rotation_rate = Vector3d::Zero();  // rad/s
 };
 
 struct RenderOptions {
   int samples_per_side = 4;  // per pixel the square of this, 2..6
   int threads = 2;
   std::uint64_t seed = 1;  // of the samples' places; not of the scene
+  // Light between surfaces is traced; without, the scene's ambient light stands for it.
+  bool is_indirect = false;
 };
 
 // Radiance in units of the sensor's full scale, row-major.
@@ -42,10 +50,10 @@ struct RadianceImage {
 // because Embree chooses its kernels by it.
 class Renderer {
  public:
+  // Halts on a scene with more than 16 lights.
   explicit Renderer(Scene scene);
 
-  // O(pixels * samples). Surfaces are matt; light comes from the lights and the ambient term, none
-  // bounces.
+  // O(pixels * samples).
   [[nodiscard]] RadianceImage Render(const Camera& camera, const RenderOptions& options) const;
 
   [[nodiscard]] const Scene& scene() const { return scene_; }

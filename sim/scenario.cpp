@@ -4,213 +4,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/placement.h"
+#include "sim/layout.h"
 #include "sim/random.h"
 
 namespace wirepose::sim {
 namespace {
 
-constexpr double kMaxTargetSize = 0.6;      // m: larger things do not stand on a counter
-constexpr double kCounterHalfDepth = 0.35;  // m
-constexpr double kCounterHalfWidth = 1.6;   // m
-constexpr double kGap = 0.012;              // m between things
-constexpr double kWantedVisibility = 0.75;  // of each target, in the first frame
-constexpr int kMaxLayouts = 40;
+constexpr int kMaxLayouts = 60;
 constexpr double kDegree = std::numbers::pi / 180;
-
-float Pick(Random& random, double low, double high) { return static_cast<float>(random.Uniform(low, high)); }
-
-std::uint32_t PickSeed(Random& random) { return static_cast<std::uint32_t>(random.Next()); }
-
-// Adds meshes with poses to a scene.
-class SceneBuilder {
- public:
-  explicit SceneBuilder(Scene& scene) : scene_(scene) {}
-
-  Instance& Add(const Mesh& mesh, const Pose& T_world_object, const Material& material) {
-    scene_.meshes.push_back(mesh);
-    Instance instance;
-    instance.mesh = static_cast<int>(scene_.meshes.size()) - 1;
-    instance.T_world_object = T_world_object;
-    instance.material = material;
-    scene_.instances.push_back(instance);
-    return scene_.instances.back();
-  }
-
-  void AddSlab(const Vector3d& low, const Vector3d& high, const Material& material) {
-    Pose T;
-    T.t = 0.5 * (low + high);
-    Add(MakeBox((high - low).cast<float>()), T, material);
-  }
-
- private:
-  Scene& scene_;
-};
-
-// Counter, wall, cabinets and floor. Returns the counter's albedo, for things to stand out from.
-float BuildRoom(Random& random, SceneBuilder& builder) {
-  Material counter;
-  counter.texture = random.Chance(0.5) ? Texture::kWood : Texture::kStone;
-  counter.scale_m = counter.texture == Texture::kWood ? 0.12F : 0.03F;
-  counter.albedo = Pick(random, 0.35, 0.6);
-  counter.seed = PickSeed(random);
-  const double w = kCounterHalfWidth, d = kCounterHalfDepth;
-  builder.AddSlab({-w, -d, -0.04}, {w, d, 0}, counter);
-
-  Material wall{Texture::kTiles};
-  wall.albedo = Pick(random, 0.45, 0.75);
-  wall.second_albedo = wall.albedo * Pick(random, 0.5, 0.8);
-  wall.scale_m = Pick(random, 0.09, 0.16);
-  wall.noise = 0.03F;
-  wall.seed = PickSeed(random);
-  builder.AddSlab({-w, d, -1}, {w, d + 0.1, 1.6}, wall);
-
-  Material cabinet{Texture::kPanels};
-  cabinet.albedo = Pick(random, 0.25, 0.7);
-  cabinet.second_albedo = 0.08F;
-  cabinet.scale_m = 0.45F;
-  cabinet.seed = PickSeed(random);
-  builder.AddSlab({-w, -d + 0.03, -0.9}, {w, d, -0.041}, cabinet);
-
-  Material floor{Texture::kTiles};
-  floor.albedo = Pick(random, 0.2, 0.4);
-  floor.second_albedo = 0.6F * floor.albedo;
-  floor.scale_m = 0.3F;
-  floor.seed = PickSeed(random);
-  builder.AddSlab({-w, -3, -1}, {w, d, -0.9}, floor);
-  return counter.albedo;
-}
-
-// A lamp above and a window to one side.
-void AddLights(Random& random, Scene& scene) {
-  AreaLight lamp;
-  lamp.centre = Vector3(Pick(random, -0.4, 0.4), Pick(random, -0.5, -0.1), 1.8F);
-  lamp.half_u = Vector3(0.25F, 0, 0);
-  lamp.half_v = Vector3(0, -0.25F, 0);  // u x v points down
-  lamp.intensity = Pick(random, 1.2, 2.2);
-  AreaLight window;
-  const float side = random.Chance(0.5) ? 1.0F : -1.0F;
-  window.centre = Vector3(1.5F * side, Pick(random, -1.2, -0.6), Pick(random, 0.6, 1.0));
-  window.half_u = Vector3(0, 0.35F * side, 0);
-  window.half_v = Vector3(0, 0, -0.4F);  // u x v points to the counter
-  window.intensity = Pick(random, 0.8, 2.0);
-  scene.lights = {lamp, window};
-  scene.ambient_up = 0.22F;
-  scene.ambient_down = 0.12F;
-  scene.background = 0.1F;
-}
-
-// An albedo that stands out from its surroundings by at least 0.15.
-float StandOut(Random& random, float surroundings) {
-  for (int i = 0; i < 50; ++i) {
-    const float albedo = Pick(random, 0.2, 0.85);
-    if (std::abs(albedo - surroundings) > 0.15F) return albedo;
-  }
-  return surroundings > 0.5F ? 0.2F : 0.8F;
-}
-
-// Fills the counter without letting things touch.
-class Counter {
- public:
-  Counter(Random& random, SceneBuilder& builder) : random_(random), builder_(builder) {}
-
-  // The region in which something is put down.
-  struct Region {
-    double x_half, y_low, y_high;
-  };
-
-  // Puts the object somewhere in the region, turned by up to `max_yaw`; null when there was no
-  // room.
-  Instance* Place(const Mesh& mesh, const RestingPose& rest, const Region& region, double max_yaw,
-                  const Material& material) {
-    constexpr int kTries = 40;
-    for (int i = 0; i < kTries; ++i) {
-      Footprint print;
-      print.centre = {random_.Uniform(-region.x_half, region.x_half), random_.Uniform(region.y_low, region.y_high)};
-      print.half = rest.half;
-      print.yaw_rad = random_.Uniform(-max_yaw, max_yaw);
-      if (!IsFree(print)) continue;
-      taken_.push_back(print);
-      const Pose turn{Eigen::AngleAxisd(print.yaw_rad, Vector3d::UnitZ()).toRotationMatrix(),
-                      Vector3d(print.centre.x(), print.centre.y(), 0)};
-      return &builder_.Add(mesh, turn * rest.T_table_object, material);
-    }
-    return nullptr;
-  }
-
- private:
-  [[nodiscard]] bool IsFree(const Footprint& print) const {
-    const double c = std::abs(std::cos(print.yaw_rad)), s = std::abs(std::sin(print.yaw_rad));
-    const double reach = s * print.half.x() + c * print.half.y();
-    if (std::abs(print.centre.y()) + reach > kCounterHalfDepth - kGap) return false;
-    return std::none_of(taken_.begin(), taken_.end(),
-                        [&](const Footprint& other) { return Overlap(print, other, kGap); });
-  }
-
-  Random& random_;
-  SceneBuilder& builder_;
-  std::vector<Footprint> taken_;
-};
-
-Material TargetMaterial(Random& random, const std::string& name, float counter_albedo) {
-  Material material;
-  material.texture = name.find("dispenser") == std::string::npos ? Texture::kLabel : Texture::kPlain;
-  material.albedo = StandOut(random, counter_albedo);
-  material.second_albedo = StandOut(random, material.albedo);
-  material.seed = PickSeed(random);
-  return material;
-}
-
-void PlaceTargets(Random& random, const std::vector<const TargetMesh*>& small, Counter& counter, float counter_albedo) {
-  std::vector<const TargetMesh*> order = small;
-  for (std::size_t i = order.size() - 1; i > 0; --i) {
-    std::swap(order[i], order[static_cast<std::size_t>(random.Below(static_cast<int>(i) + 1))]);
-  }
-  const int count = 1 + random.Below(std::min<int>(3, static_cast<int>(order.size())));
-  for (int i = 0; i < count; ++i) {
-    const TargetMesh& target = *order[static_cast<std::size_t>(i)];
-    const std::vector<RestingPose> rests = RestingPoses(target.mesh);
-    const RestingPose& rest = rests[static_cast<std::size_t>(random.Below(static_cast<int>(rests.size())))];
-    // Tall things stand behind low ones; what has a front shows it.
-    const bool is_tall = rest.height > 0.35;
-    const Counter::Region region = is_tall ? Counter::Region{0.22, 0.0, 0.15} : Counter::Region{0.32, -0.25, 0.1};
-    const double max_yaw = rests.size() > 1 ? std::numbers::pi : 40 * kDegree;
-    Instance* placed =
-        counter.Place(target.mesh, rest, region, max_yaw, TargetMaterial(random, target.name, counter_albedo));
-    if (placed == nullptr) continue;
-    placed->obj_id = target.obj_id;
-    placed->name = target.name;
-  }
-}
-
-Mesh DistractorMesh(Random& random, Material& material) {
-  material.seed = PickSeed(random);
-  material.albedo = Pick(random, 0.15, 0.8);
-  material.second_albedo = StandOut(random, material.albedo);
-  switch (random.Below(4)) {
-    case 0:
-    case 1:
-      material.texture = random.Chance(0.5) ? Texture::kLabel : Texture::kPlain;
-      material.mapping = Mapping::kCylinder;
-      return MakeCylinder(Pick(random, 0.03, 0.055), Pick(random, 0.08, 0.2), 48);
-    case 2:
-      material.texture = random.Chance(0.6) ? Texture::kLabel : Texture::kPlain;
-      return MakeBox({Pick(random, 0.06, 0.12), Pick(random, 0.05, 0.1), Pick(random, 0.05, 0.22)});
-    default:
-      material.texture = Texture::kWood;
-      material.scale_m = 0.07F;
-      return MakeBox({Pick(random, 0.25, 0.35), Pick(random, 0.15, 0.22), 0.018F});
-  }
-}
-
-void PlaceDistractors(Random& random, Counter& counter) {
-  const int count = 3 + random.Below(4);
-  for (int i = 0; i < count; ++i) {
-    Material material;
-    const Mesh mesh = DistractorMesh(random, material);
-    (void)counter.Place(mesh, RestingPoses(mesh).front(), {0.6, -0.3, 0.3}, std::numbers::pi, material);
-  }
-}
 
 // A camera at `eye` that looks at `target`, its x axis level before it is rolled.
 Pose LookAt(const Vector3d& eye, const Vector3d& target, double roll_rad) {
@@ -223,95 +24,202 @@ Pose LookAt(const Vector3d& eye, const Vector3d& target, double roll_rad) {
   return T_world_camera;
 }
 
-void AimCamera(Random& random, Scenario& scenario) {
-  Vector3d middle = Vector3d::Zero();
-  double targets = 0, top = 0;
-  for (const Instance& instance : scenario.scene.instances) {
-    if (instance.obj_id == 0) continue;
-    middle += instance.T_world_object.t;
-    top = std::max(top, 2 * instance.T_world_object.t.z());
-    targets += 1;
+// The middle of all objects that have truth; the worktop where there is none.
+Vector3d MiddleOf(const Scene& scene, const std::vector<Placed>& placed) {
+  Vector3d middle(0, 0, 0.08);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const Vector3d& t = scene.instances[static_cast<std::size_t>(placed[i].instance)].T_world_object.t;
+    middle = i == 0 ? t : Vector3d(middle + t);
   }
-  scenario.look_at = middle / std::max(targets, 1.0);
-  scenario.look_at.x() += random.Uniform(-0.05, 0.05);
-  scenario.look_at.z() *= 0.8;
-  const double down = random.Uniform(15, 40) * kDegree;
-  const double around = random.Uniform(-25, 25) * kDegree;
-  const double distance = random.Uniform(top > 0.3 ? 0.95 : 0.7, 1.4);
+  return middle / std::max<double>(1, static_cast<double>(placed.size()));
+}
+
+// The middle of the baseline looks at the objects, so that both eyes see them.
+void AimCamera(Random& random, const CameraSpec& spec, const Room& room, Scenario& scenario) {
+  for (int i = 0; i < 3; ++i) scenario.look_at[i] += (i == 2 ? 0.5 : 1.0) * Draw(random, spec.aim_m);
+  const double down = Draw(random, spec.elevation_deg) * kDegree;
+  const double around = Draw(random, spec.azimuth_deg) * kDegree;
+  const double distance = Draw(random, spec.distance_m);
   const Vector3d back(std::sin(around) * std::cos(down), -std::cos(around) * std::cos(down), std::sin(down));
-  const double roll = random.Uniform(-2, 2) * kDegree;
-  scenario.rig.T_world_left = LookAt(scenario.look_at + distance * back, scenario.look_at, roll);
+  Vector3d eye = scenario.look_at + distance * back;
+  eye.z() = std::clamp(eye.z(), room.floor_z + 0.3, room.ceiling_z - 0.15);
+  eye.y() = std::max(eye.y(), -3.8);
+  Pose T = LookAt(eye, scenario.look_at, Draw(random, spec.roll_deg) * kDegree);
+  T.t -= 0.5 * spec.calibration.T_right_left.t.norm() * T.R.col(0);
+  scenario.rig.calibration = spec.calibration;
+  scenario.rig.T_world_left = T;
 }
 
-Scenario TryLayout(std::uint64_t seed, const std::vector<const TargetMesh*>& small,
-                   const StereoCalibration& calibration) {
-  Random random(seed);
+void SetSensors(Random& random, const SensorSpec& spec, StereoRig& rig) {
+  Sensor sensor;
+  sensor.full_well_e = DrawFloat(random, spec.white_e);
+  sensor.read_noise_e = DrawFloat(random, spec.read_noise_e);
+  sensor.dark_e = static_cast<float>(spec.dark_e);
+  sensor.prnu = static_cast<float>(spec.prnu);
+  sensor.dsnu_e = static_cast<float>(spec.dsnu_e);
+  sensor.gamma = static_cast<float>(DrawOne(random, spec.gamma));
+  sensor.veil = DrawFloat(random, spec.veil);
+  rig.left_sensor = rig.right_sensor = sensor;
+  rig.left_sensor.gain = 1;
+  rig.left_sensor.serial = 1;
+  rig.right_sensor.gain = DrawFloat(random, spec.right_gain);
+  rig.right_sensor.serial = 2;
+  rig.exposure_target = DrawFloat(random, spec.brightness);
+  rig.exposure_s = Draw(random, spec.exposure_ms) / 1000;
+  rig.psf_sigma_px = Draw(random, spec.psf_sigma_px);
+  rig.right_psf_sigma_px = Draw(random, spec.psf_sigma_px);
+  rig.vignetting = Draw(random, spec.vignetting);
+}
+
+struct Draft {
   Scenario scenario;
+  std::vector<Placed> placed;
+};
+
+Draft DrawScene(const ScenarioSpec& spec, std::uint64_t seed, const std::vector<TargetMesh>& targets) {
+  Random random(seed);
+  Draft draft;
+  Scenario& scenario = draft.scenario;
   SceneBuilder builder(scenario.scene);
-  const float counter_albedo = BuildRoom(random, builder);
-  AddLights(random, scenario.scene);
-  Counter counter(random, builder);
-  PlaceTargets(random, small, counter, counter_albedo);
-  PlaceDistractors(random, counter);
-  scenario.rig.calibration = calibration;
-  AimCamera(random, scenario);
-  return scenario;
+  const bool needs_bay =
+      std::any_of(spec.objects.begin(), spec.objects.end(), [](const ObjectSpec& o) { return o.on == Support::kFloor; });
+  const Room room = BuildRoom(random, spec.room, needs_bay, builder);
+  AddLights(random, spec.lights, room, scenario.scene);
+  Layout layout(random, builder, room);
+  layout.PlaceObjects(spec.objects, targets);
+  scenario.look_at = MiddleOf(scenario.scene, layout.placed());
+  AimCamera(random, spec.camera, room, scenario);
+  layout.PlaceOccluders(spec.clutter, scenario.rig.T_world_left.t);
+  layout.PlaceClutter(spec.clutter);
+  SetSensors(random, spec.sensor, scenario.rig);
+  scenario.motion = {spec.path.kind, Draw(random, spec.path.speed_m_per_s), Draw(random, spec.path.shake_deg) * kDegree,
+                     random.Next()};
+  draft.placed = layout.placed();
+  return draft;
 }
 
-// The least visible target's visible fraction, found at a quarter of the resolution.
-double WorstVisibility(const Scenario& scenario) {
-  Camera camera = LeftCamera(scenario.rig);
-  camera.width /= 4;
-  camera.height /= 4;
-  camera.intrinsics.fx /= 4;
-  camera.intrinsics.fy /= 4;
-  camera.intrinsics.cx /= 4;
-  camera.intrinsics.cy /= 4;
-  double worst = 1;
-  int targets = 0;
-  for (const ObjectTruth& object : FindTruth(Renderer(scenario.scene), camera, 1).objects) {
-    worst = std::min(worst, object.visib_fract);
-    ++targets;
+Camera Coarse(Camera camera) {
+  constexpr int kFactor = 4;
+  camera.width /= kFactor;
+  camera.height /= kFactor;
+  for (double* length : {&camera.intrinsics.fx, &camera.intrinsics.fy, &camera.intrinsics.cx, &camera.intrinsics.cy}) {
+    *length /= kFactor;
   }
-  return targets > 0 ? worst : 0;
+  return camera;
+}
+
+// How far the objects' visible fractions are from those wanted, added up.
+double Violation(const Draft& draft) {
+  if (draft.placed.empty()) return 0;
+  const Renderer renderer(draft.scenario.scene);
+  const Truth truth = FindTruth(renderer, Coarse(LeftCamera(draft.scenario.rig)), 1);
+  double sum = 0;
+  for (const ObjectTruth& object : truth.objects) {
+    const auto placed = std::find_if(draft.placed.begin(), draft.placed.end(),
+                                     [&](const Placed& p) { return p.instance == object.instance; });
+    if (placed == draft.placed.end()) continue;
+    const Range& wanted = placed->spec->visible;
+    sum += std::max({0.0, wanted.low - object.visib_fract, object.visib_fract - wanted.high});
+  }
+  return sum;
+}
+
+// Instances that found no room count as a violation too.
+int Missing(const ScenarioSpec& spec, const Draft& draft) {
+  double least = 0;
+  for (const ObjectSpec& object : spec.objects) least += object.is_look_alike ? 0 : std::floor(object.count.low);
+  return std::max(0, static_cast<int>(least) - static_cast<int>(draft.placed.size()));
+}
+
+std::string NamesOf(const std::vector<TargetMesh>& targets) {
+  std::string names;
+  for (const TargetMesh& target : targets) names += (names.empty() ? "" : ", ") + target.name;
+  return names.empty() ? "none" : names;
+}
+
+Result<void, std::string> CheckModels(const ScenarioSpec& spec, const std::vector<TargetMesh>& targets) {
+  for (const ObjectSpec& object : spec.objects) {
+    for (const std::string& name : object.models) {
+      const bool is_known = std::any_of(targets.begin(), targets.end(), [&](const TargetMesh& t) { return t.name == name; });
+      if (!is_known) {
+        return unexpected("scenario " + spec.name + ": no model '" + name + "' among the meshes; there are " + NamesOf(targets));
+      }
+    }
+    const bool fits = std::any_of(targets.begin(), targets.end(), [&](const TargetMesh& t) { return FitsOn(object.on, t); });
+    if (object.models.empty() && !fits) {
+      return unexpected("scenario " + spec.name + ": no mesh is small enough for a worktop (0.6 m); add one, and check " +
+                        "that the meshes are in millimetres");
+    }
+  }
+  return {};
+}
+
+// A turn that wanders between -1 and 1, with a few oscillations a second.
+double Shake(std::uint64_t seed, int axis, double time_s) {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const std::uint64_t h = Mix(seed, static_cast<std::uint64_t>(3 * axis + i));
+    const double frequency = 5 + 4 * double{UnitFloat(h)}, phase = 2 * std::numbers::pi * double{UnitFloat(h << 24)};
+    sum += std::sin(2 * std::numbers::pi * frequency * time_s + phase) - std::sin(phase);
+  }
+  return sum / 3;
+}
+
+}  // namespace
+
+namespace {
+
+Pose PoseAt(const Scenario& s, double time_s) {
+  Pose T = s.rig.T_world_left;
+  const double distance = std::max((T.t - s.look_at).norm(), 0.1);
+  if (s.motion.kind == PathKind::kOrbit) {
+    constexpr double kSwing = 0.3, kBob = 0.05;  // rad
+    const double rate = s.motion.speed_m_per_s / distance;
+    const double around = kSwing * std::sin(rate / kSwing * time_s);
+    const double up = kBob * std::sin(0.5 * time_s);
+    const Vector3d x = T.R.col(0);
+    const Matrix3d R = (Eigen::AngleAxisd(around, Vector3d::UnitZ()) * Eigen::AngleAxisd(up, x)).toRotationMatrix();
+    T = Pose{R, s.look_at - R * s.look_at} * T;
+  } else if (s.motion.kind == PathKind::kDrive) {
+    // Forwards along the floor, never closer than 0.4 m.
+    const Vector3d ahead = Vector3d(T.R(0, 2), T.R(1, 2), 0).normalized();
+    T.t += std::min(s.motion.speed_m_per_s * time_s, std::max(distance - 0.4, 0.0)) * ahead;
+  }
+  if (s.motion.shake_rad > 0) {
+    Vector3d w;
+    for (int axis = 0; axis < 3; ++axis) w[axis] = s.motion.shake_rad * Shake(s.motion.seed, axis, time_s);
+    T.R = T.R * ExpSo3(w);
+  }
+  return T;
 }
 
 }  // namespace
 
 StereoRig Scenario::RigAt(double time_s) const {
-  constexpr double kSwing = 0.3, kBob = 0.05;  // rad
-  const double around = kSwing * std::sin(orbit_rad_per_s / kSwing * time_s);
-  const double up = kBob * std::sin(0.5 * time_s);
-  // Turns about axes through `look_at`: the vertical one and the camera's own x axis.
-  const Vector3d x = rig.T_world_left.R.col(0);
-  const Matrix3d R = (Eigen::AngleAxisd(around, Vector3d::UnitZ()) * Eigen::AngleAxisd(up, x)).toRotationMatrix();
+  constexpr double kStep = 1e-3;  // s
   StereoRig moved = rig;
-  moved.T_world_left = Pose{R, look_at - R * look_at} * rig.T_world_left;
+  moved.T_world_left = PoseAt(*this, time_s);
+  if (motion.kind == PathKind::kStill && motion.shake_rad == 0) return moved;
+  const Pose before = PoseAt(*this, time_s - kStep), after = PoseAt(*this, time_s + kStep);
+  moved.velocity = (after.t - before.t) / (2 * kStep);
+  const Eigen::AngleAxisd turn(after.R * before.R.transpose());
+  moved.rotation_rate = turn.angle() / (2 * kStep) * turn.axis();
   return moved;
 }
 
-Result<Scenario, std::string> KitchenScenario(std::uint64_t seed, const std::vector<TargetMesh>& targets,
-                                              const StereoCalibration& calibration) {
-  std::vector<const TargetMesh*> small;
-  for (const TargetMesh& target : targets) {
-    const Vector3 size = target.mesh.Max() - target.mesh.Min();
-    if (double{size.maxCoeff()} <= kMaxTargetSize) small.push_back(&target);
+Result<Scenario, std::string> MakeScenario(const ScenarioSpec& spec, std::uint64_t seed,
+                                           const std::vector<TargetMesh>& targets) {
+  if (const Result<void, std::string> known = CheckModels(spec, targets); !known) return unexpected(known.error());
+  Draft best;
+  double best_violation = 1e9;
+  for (int i = 0; i < kMaxLayouts && best_violation > 0; ++i) {
+    Draft draft = DrawScene(spec, Mix(seed, static_cast<std::uint64_t>(i)), targets);
+    const double violation = Missing(spec, draft) + Violation(draft);
+    if (violation >= best_violation) continue;
+    best_violation = violation;
+    best = std::move(draft);
   }
-  if (small.empty()) {
-    return unexpected<std::string>(
-        "kitchen scenario: no mesh is small enough for a counter (0.6 m); add one, and check that "
-        "the meshes are in millimetres");
-  }
-  Scenario best;
-  double best_visibility = -1;
-  for (int i = 0; i < kMaxLayouts && best_visibility < kWantedVisibility; ++i) {
-    Scenario scenario = TryLayout(Mix(seed, static_cast<std::uint64_t>(i)), small, calibration);
-    const double visibility = WorstVisibility(scenario);
-    if (visibility <= best_visibility) continue;
-    best_visibility = visibility;
-    best = std::move(scenario);
-  }
-  return best;
+  return std::move(best.scenario);
 }
 
 }  // namespace wirepose::sim

@@ -1,4 +1,4 @@
-// Ready-made worlds: a scene, the camera's path through it, and the rig.
+// One random scene of a scenario: what there is to see, and how the camera moves through it.
 #ifndef WIREPOSE_SIM_SCENARIO_H_
 #define WIREPOSE_SIM_SCENARIO_H_
 
@@ -7,31 +7,35 @@
 #include <vector>
 
 #include "base/result.h"
+#include "sim/scenario_spec.h"
 #include "sim/scene.h"
 #include "sim/stereo_shot.h"
 #include "sim/target_mesh.h"
 
 namespace wirepose::sim {
 
+struct Motion {
+  PathKind kind = PathKind::kStill;
+  double speed_m_per_s = 0;
+  double shake_rad = 0;
+  std::uint64_t seed = 0;  // of the shaking
+};
+
 struct Scenario {
   Scene scene;
-  StereoRig rig;  // at time 0
+  StereoRig rig;                         // at time 0
+  Vector3d look_at = Vector3d::Zero();  // world; orbits turn about it, drives go towards it
+  Motion motion;
 
-  // The camera circles slowly around this place and bobs a little, always looking at it.
-  Vector3d look_at = Vector3d::Zero();  // world
-  double orbit_rad_per_s = 0.12;        // of a turn to and fro over +-0.3 rad
-
-  // The rig `time_s` after the start.
+  // The rig `time_s` after the start, with its velocities.
   [[nodiscard]] StereoRig RigAt(double time_s) const;
 };
 
-// A kitchen counter of wood or stone with a tiled wall behind it. One to three of the targets that
-// are small enough to stand there (0.6 m) rest on it, mostly unoccluded at time 0, among cartons,
-// jars and cans. The camera is 0.7 to 1.4 m away and looks down by 15 to 40 degrees. The same seed
-// and targets give the same scenario. The error is one line: no target is small enough.
-[[nodiscard]] Result<Scenario, std::string> KitchenScenario(
-    std::uint64_t seed, const std::vector<TargetMesh>& targets,
-    const StereoCalibration& calibration = DefaultCalibration());
+// Draws a scene: room, lights, objects, clutter, camera. Draws again, up to 60 times, until every
+// object is as visible as the specification wants, and keeps the nearest. The same arguments give
+// the same scene. The error is one line: a model that is not among the targets.
+[[nodiscard]] Result<Scenario, std::string> MakeScenario(const ScenarioSpec& spec, std::uint64_t seed,
+                                                         const std::vector<TargetMesh>& targets);
 
 }  // namespace wirepose::sim
 

@@ -20,25 +20,36 @@ StereoCalibration DefaultCalibration() {
 
 Camera LeftCamera(const StereoRig& rig) {
   const StereoCalibration& c = rig.calibration;
-  return {c.left, c.width, c.height, rig.T_world_left, rig.psf_sigma_px};
+  return {c.left,         c.width,        c.height,     rig.T_world_left,  rig.psf_sigma_px,
+          rig.vignetting, rig.exposure_s, rig.velocity, rig.rotation_rate};
 }
 
 Camera RightCamera(const StereoRig& rig) {
   const StereoCalibration& c = rig.calibration;
-  return {c.right, c.width, c.height, rig.T_world_left * c.T_right_left.Inverse(), rig.psf_sigma_px};
+  const Pose T_world_right = rig.T_world_left * c.T_right_left.Inverse();
+  const Vector3d velocity = rig.velocity + rig.rotation_rate.cross(T_world_right.t - rig.T_world_left.t);
+  return {c.right,        c.width,        c.height, T_world_right,     rig.right_psf_sigma_px,
+          rig.vignetting, rig.exposure_s, velocity, rig.rotation_rate};
 }
 
 StereoShot ShootStereo(const Renderer& renderer, const StereoRig& rig, const RenderOptions& options) {
+  return ShootStereo(renderer, rig, rig, options);
+}
+
+StereoShot ShootStereo(const Renderer& renderer, const StereoRig& left_rig, const StereoRig& right_rig,
+                       const RenderOptions& options) {
   RenderOptions left = options, right = options;
   left.seed = Mix(options.seed, 1);
   right.seed = Mix(options.seed, 2);
-  const Camera left_camera = LeftCamera(rig);
+  const Camera left_camera = LeftCamera(left_rig);
   const RadianceImage left_light = renderer.Render(left_camera, left);
-  const RadianceImage right_light = renderer.Render(RightCamera(rig), right);
-  const float exposure = AutoExposure(left_light, rig.exposure_target);
+  const RadianceImage right_light = renderer.Render(RightCamera(right_rig), right);
+  // The target is a grey level, the exposure acts before the gamma curve.
+  const float target = std::pow(left_rig.exposure_target, left_rig.left_sensor.gamma);
+  const float exposure = AutoExposure(left_light, target);
   StereoShot shot;
-  shot.left = Expose(left_light, exposure, rig.left_sensor, Mix(options.seed, 3));
-  shot.right = Expose(right_light, exposure, rig.right_sensor, Mix(options.seed, 4));
+  shot.left = Expose(left_light, exposure, left_rig.left_sensor, Mix(options.seed, 3));
+  shot.right = Expose(right_light, exposure, right_rig.right_sensor, Mix(options.seed, 4));
   shot.truth = FindTruth(renderer, left_camera, options.threads);
   return shot;
 }

@@ -14,10 +14,18 @@ namespace wirepose::sim {
 struct StereoRig {
   StereoCalibration calibration;
   Pose T_world_left;          // raw left camera in the world
-  double psf_sigma_px = 0.5;  // blur of both lenses
+  double psf_sigma_px = 0.5;   // blur of the left lens
+  double right_psf_sigma_px = 0.5;
+  double vignetting = 0;  // of both lenses, see Camera
+
+  // Motion of the left camera during the exposure, in the world.
+  double exposure_s = 0;
+  Vector3d velocity = Vector3d::Zero();       // m/s
+  Vector3d rotation_rate = Vector3d::Zero();  // rad/s
+
   Sensor left_sensor;
-  Sensor right_sensor{.gain = 0.9F};  // the eyes of real rigs differ
-  float exposure_target = 0.8F;       // both eyes are exposed as the left one asks, see AutoExposure
+  Sensor right_sensor{.gain = 0.9F, .serial = 2};  // the eyes of real rigs differ
+  float exposure_target = 0.8F;  // grey level over 255; both eyes are exposed as the left one asks, see AutoExposure
 };
 
 struct StereoShot {
@@ -32,6 +40,11 @@ struct StereoShot {
 // Renders both eyes. Deterministic: the same arguments give the same bytes, whatever
 // `options.threads` is.
 [[nodiscard]] StereoShot ShootStereo(const Renderer& renderer, const StereoRig& rig, const RenderOptions& options);
+
+// As above with eyes that are not where one rig has them: the left eye of the first, the right one
+// of the second.
+[[nodiscard]] StereoShot ShootStereo(const Renderer& renderer, const StereoRig& left_rig, const StereoRig& right_rig,
+                                     const RenderOptions& options);
 
 // One eye of the rig as a camera.
 [[nodiscard]] Camera LeftCamera(const StereoRig& rig);

@@ -3,37 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/random.h"
+#include "sim/noise.h"
+#include "sim/print.h"
 
 namespace wirepose::sim {
 namespace {
-
-// A 32 bit integer hash (Wellons' lowbias32): cheap enough for several calls a sample.
-std::uint32_t Hash(std::uint32_t x) {
-  x = (x ^ (x >> 16)) * 0x7FEB352DU;
-  x = (x ^ (x >> 15)) * 0x846CA68BU;
-  return x ^ (x >> 16);
-}
-
-float HashUnit(int x, int y, std::uint32_t seed) {
-  const std::uint32_t h =
-      Hash(static_cast<std::uint32_t>(x) * 0x9E3779B1U ^ Hash(static_cast<std::uint32_t>(y) + seed * 0x85EBCA6BU));
-  return static_cast<float>(h >> 8) * 0x1.0p-24F;
-}
-
-int Floor(float x) { return static_cast<int>(std::floor(x)); }
-float Fraction(float x) { return x - std::floor(x); }
-float Lerp(float a, float b, float t) { return a + (b - a) * t; }
-float Smooth(float t) { return t * t * (3.0F - 2.0F * t); }
-
-// Smooth noise in [-1, 1] with features one unit wide.
-float ValueNoise(float x, float y, std::uint32_t seed) {
-  const int ix = Floor(x), iy = Floor(y);
-  const float tx = Smooth(x - static_cast<float>(ix)), ty = Smooth(y - static_cast<float>(iy));
-  const float low = Lerp(HashUnit(ix, iy, seed), HashUnit(ix + 1, iy, seed), tx);
-  const float high = Lerp(HashUnit(ix, iy + 1, seed), HashUnit(ix + 1, iy + 1, seed), tx);
-  return 2.0F * Lerp(low, high, ty) - 1.0F;
-}
 
 // A place on the surface: metres from the lower corner of its face, and the face's extent.
 struct PlanePoint {
@@ -146,7 +120,57 @@ float Label(const Material& m, const PlanePoint& q) {
   }
 }
 
-float Pattern(const Material& m, const PlanePoint& q) {
+float Marble(const Material& m, const PlanePoint& q) {
+  const float x = q.u / m.scale_m, y = q.v / m.scale_m;
+  const float warp = ValueNoise(x, y, m.seed) + 0.5F * ValueNoise(2.3F * x, 2.3F * y, m.seed + 1) +
+                     0.25F * ValueNoise(5.1F * x, 5.1F * y, m.seed + 3);
+  // Streaks along a slanted direction, warped; strong ones and faint ones.
+  const float streak = std::abs(std::sin(0.9F * x + 1.7F * y + 2.2F * warp));
+  const float strength = 0.5F + 0.5F * ValueNoise(0.6F * x, 0.6F * y, m.seed + 2);
+  const float depth = std::max(0.0F, 1.0F - 5.0F * streak);
+  return m.albedo * (1.0F + 0.06F * warp - 0.3F * strength * depth * depth);
+}
+
+float Steel(const Material& m, const PlanePoint& q) {
+  return m.albedo * (1.0F + 0.06F * ValueNoise(q.u * 8.0F, q.v * 900.0F, m.seed));
+}
+
+// Print is upright and not mirrored for whoever looks at the face.
+FacePoint ToFace(const Material& m, const PlanePoint& q) {
+  const bool is_mirrored = q.face == 0 || q.face == 3 || q.face == 4;
+  return {is_mirrored ? q.width - q.u : q.u, q.v, q.width, q.height, Hash(m.seed * 31U + q.face)};
+}
+
+float Book(const Material& m, const Bounds& bounds, const PlanePoint& q) {
+  const Vector3 size = bounds.high - bounds.low;
+  int thin = 0, middle = 0;
+  size.minCoeff(&thin);
+  for (int i = 0; i < 3; ++i) {
+    if (i != thin && size[i] < size.maxCoeff()) middle = i;
+  }
+  const int axis = static_cast<int>(q.face / 2);
+  const FacePoint face = ToFace(m, q);
+  if (axis == thin) return BookCover(m, face);
+  if (axis == middle && q.face % 2 == 0) return BookSpine(m, face);
+  const int iu = axis == 0 ? 1 : 0;
+  return BookPages(m, face, iu != thin);
+}
+
+float Fridge(const Material& m, const Bounds& bounds, const PlanePoint& q, const Vector3& p) {
+  constexpr float kHandleDepth = 0.03F;  // m
+  if (p.y() < bounds.low.y() + kHandleDepth) return m.second_albedo;
+  return q.face == 2 ? DoorPrint(m, ToFace(m, q)) : m.albedo;
+}
+
+float Parts(const Material& m, const Bounds& bounds, const Vector3& p) {
+  const float height = (p.z() - bounds.low.z()) / (bounds.high.z() - bounds.low.z());
+  const bool is_dark_tank = (m.seed & 1U) != 0, is_dark_column = (m.seed & 2U) != 0;
+  if (height < 0.1F) return (m.seed & 4U) != 0 ? m.second_albedo : m.albedo;
+  if (height < 0.52F) return is_dark_column ? m.second_albedo : m.albedo;
+  return is_dark_tank ? m.second_albedo : m.albedo;
+}
+
+float Pattern(const Material& m, const Bounds& bounds, const PlanePoint& q, const Vector3& p) {
   switch (m.texture) {
     case Texture::kPlain:
       return m.albedo;
@@ -162,6 +186,22 @@ float Pattern(const Material& m, const PlanePoint& q) {
       return Checker(m, q);
     case Texture::kLabel:
       return Label(m, q);
+    case Texture::kMarble:
+      return Marble(m, q);
+    case Texture::kSteel:
+      return Steel(m, q);
+    case Texture::kParcel:
+      return ParcelPrint(m, ToFace(m, q));
+    case Texture::kGrocery:
+      return GroceryPrint(m, ToFace(m, q));
+    case Texture::kBook:
+      return Book(m, bounds, q);
+    case Texture::kPoster:
+      return PosterPrint(m, ToFace(m, q));
+    case Texture::kFridge:
+      return Fridge(m, bounds, q, p);
+    case Texture::kParts:
+      return Parts(m, bounds, p);
   }
   return m.albedo;
 }
@@ -170,7 +210,7 @@ float Pattern(const Material& m, const PlanePoint& q) {
 
 float AlbedoAt(const Material& material, const Bounds& bounds, const Vector3& p, const Vector3& n) {
   const PlanePoint q = MapToPlane(material.mapping, bounds, p, n);
-  float albedo = Pattern(material, q);
+  float albedo = Pattern(material, bounds, q, p);
   if (material.noise > 0) {
     // Mottling a few millimetres wide: enough for stereo to hold on to, too little to be an edge.
     albedo *= 1.0F + material.noise * ValueNoise(q.u * 250.0F, q.v * 250.0F, material.seed + 101U * q.face);

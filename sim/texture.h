@@ -17,6 +17,14 @@ enum class Texture : std::uint8_t {
   kPanels,   // as kTiles but wide joints only: cabinet doors
   kChecker,  // squares of `scale_m`, `albedo` and `second_albedo`
   kLabel,    // a printed carton: tape, labels with text and bars, bands; every face of its own
+  kMarble,   // veins
+  kSteel,    // brushed along u
+  kParcel,   // cardboard with tape, address labels, stamps
+  kGrocery,  // brand name, picture, small print, bar code
+  kBook,     // cover and back on the two largest faces, spine, pages
+  kPoster,   // framed
+  kFridge,   // a painted appliance, front = -y: notes on its doors, handles of `second_albedo`
+  kParts,    // an appliance of two tones: base, column, tank
 };
 
 // How a point of the surface gets its plane coordinates (u, v).
@@ -33,6 +41,10 @@ struct Material {
   float scale_m = 0.1F;
   float noise = 0.02F;     // amplitude of the fine mottling on top of every texture
   std::uint32_t seed = 0;  // tells two instances of one texture apart
+  // Share of the light that a view straight from above sees mirrored (0 matt, 0.04 varnish, 0.3
+  // metal); more at grazing angles (Schlick 1994).
+  float gloss = 0;
+  float roughness = 0.2F;  // 0 a mirror .. 1
 };
 
 // Bounding box of the object, in its own frame: what a label is centred on.

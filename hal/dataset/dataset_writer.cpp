@@ -1,5 +1,6 @@
 #include "hal/dataset/dataset_writer.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <system_error>
 
@@ -91,6 +92,10 @@ Result<DatasetWriter, std::string> DatasetWriter::Create(const fs::path& root, c
   return DatasetWriter(root, calibration);
 }
 
+DatasetWriter DatasetWriter::Continue(const fs::path& root, const StereoCalibration& calibration) {
+  return {root, calibration};
+}
+
 Result<void, std::string> DatasetWriter::AddFrame(int scene_id, const FrameRecord& record, ImageView left,
                                                   ImageView right, BasicImageView<const std::uint16_t> depth) {
   const fs::path scene = root_ / "test" / SixDigits(scene_id);
@@ -110,6 +115,7 @@ Result<void, std::string> DatasetWriter::AddFrame(int scene_id, const FrameRecor
 Result<void, std::string> DatasetWriter::FinishScene(int scene_id) {
   ordered_json camera1, camera2, gt1, gt2, info;
   const Pose& T_right_left = calibration_.T_right_left;
+  std::sort(records_.begin(), records_.end(), [](const auto& a, const auto& b) { return a.im_id < b.im_id; });
   for (const FrameRecord& record : records_) {
     const std::string key = std::to_string(record.im_id);
     camera1[key] = SceneCamera(calibration_.left, record.T_left_world);

@@ -44,12 +44,16 @@ class DatasetWriter {
   [[nodiscard]] static Result<DatasetWriter, std::string> Create(const std::filesystem::path& root,
                                                                  const StereoCalibration& calibration);
 
+  // Goes on with a data set that Create made: further scenes, or a scene anew.
+  [[nodiscard]] static DatasetWriter Continue(const std::filesystem::path& root, const StereoCalibration& calibration);
+
   // Writes the images of one frame and keeps its record for FinishScene. `depth` may be empty (data
   // == nullptr).
   [[nodiscard]] Result<void, std::string> AddFrame(int scene_id, const FrameRecord& record, ImageView left,
                                                    ImageView right, BasicImageView<const std::uint16_t> depth);
 
-  // Writes scene_camera, scene_gt and scene_gt_info of the frames added since the last call.
+  // Writes scene_camera, scene_gt and scene_gt_info of the frames added since the last call, by
+  // their im_id. scene_gt_info comes last: where it is, the scene is complete.
   [[nodiscard]] Result<void, std::string> FinishScene(int scene_id);
 
   [[nodiscard]] const std::filesystem::path& root() const { return root_; }

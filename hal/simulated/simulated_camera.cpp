@@ -13,7 +13,8 @@
 
 #include "hal/buffer_ring.h"
 #include "hal/dataset/calibration_file.h"
-#include "sim/kitchen_video.h"
+#include "sim/scenario_file.h"
+#include "sim/scenario_video.h"
 
 namespace wirepose::hal {
 namespace {
@@ -41,10 +42,23 @@ std::string ToJsonLine(const SimulatedTruth& truth) {
   return line.dump() + "\n";
 }
 
-// 4 -> 2 ... 36 -> 6; 0 for what is no square.
-int SamplesPerSide(int samples_per_pixel) {
-  const int side = static_cast<int>(std::lround(std::sqrt(std::max(samples_per_pixel, 0))));
-  return side * side == samples_per_pixel ? side : 0;
+// The scenario with what the configuration changes in it.
+Result<sim::ScenarioSpec, std::string> SpecOf(const SimulatedConfig& config) {
+  sim::ScenarioSpec spec;
+  if (!config.scenario_path.empty()) {
+    const Result<sim::ScenarioSpec, std::string> read = sim::ReadScenario(config.scenario_path);
+    if (!read) return read;
+    spec = *read;
+  }
+  if (!config.calibration_path.empty()) {
+    const Result<StereoCalibration, std::string> rig = dataset::ReadCalibration(config.calibration_path);
+    if (!rig) return unexpected(rig.error());
+    spec.camera.calibration = *rig;
+  }
+  spec.seed = config.seed.value_or(spec.seed);
+  spec.rate_hz = config.frame_rate_hz.value_or(spec.rate_hz);
+  spec.samples = config.samples_per_pixel.value_or(spec.samples);
+  return spec;
 }
 
 }  // namespace
@@ -52,7 +66,8 @@ int SamplesPerSide(int samples_per_pixel) {
 // Renders ahead. Lives from Open to Close; its thread from Start to Stop.
 class SimulatedCamera::Worker {
  public:
-  Worker(const SimulatedConfig& config, sim::KitchenVideo video) : config_(config), video_(std::move(video)) {
+  Worker(const SimulatedConfig& config, const sim::ScenarioSpec& spec, sim::ScenarioVideo video)
+      : config_(config), rate_hz_(spec.rate_hz), video_(std::move(video)) {
     ring_.Allocate(video_.calibration().width, video_.calibration().height);
   }
   Worker(const Worker&) = delete;
@@ -156,7 +171,7 @@ class SimulatedCamera::Worker {
     captured.buffer = buffer;
     captured.frame.sequence = sequence;
     captured.frame.capture_time = CaptureTime(
-        std::chrono::nanoseconds(std::llround(static_cast<double>(sequence) * 1e9 / config_.frame_rate_hz)));
+        std::chrono::nanoseconds(std::llround(static_cast<double>(sequence) * 1e9 / rate_hz_)));
     captured.frame.left = ring_.left(buffer);
     captured.frame.right = ring_.right(buffer);
 
@@ -178,7 +193,8 @@ class SimulatedCamera::Worker {
   }
 
   const SimulatedConfig config_;
-  const sim::KitchenVideo video_;
+  const double rate_hz_;
+  const sim::ScenarioVideo video_;
   std::ofstream truth_file_;  // the worker thread's while it runs
   std::thread thread_;
 
@@ -211,22 +227,18 @@ CameraError SimulatedCamera::DoOpen(StereoCalibration& calibration) {
     detail_ = targets.error();
     return CameraError::kBadData;
   }
-  sim::VideoConfig video_config{config_.seed, config_.frame_rate_hz, SamplesPerSide(config_.samples_per_pixel)};
-  if (!config_.calibration_path.empty()) {
-    const Result<StereoCalibration, std::string> rig = dataset::ReadCalibration(config_.calibration_path);
-    if (!rig) {
-      detail_ = rig.error();
-      return CameraError::kBadData;
-    }
-    video_config.calibration = *rig;
+  const Result<sim::ScenarioSpec, std::string> spec = SpecOf(config_);
+  if (!spec) {
+    detail_ = spec.error();
+    return CameraError::kBadData;
   }
-  Result<sim::KitchenVideo, std::string> video = sim::KitchenVideo::Create(video_config, *targets);
+  Result<sim::ScenarioVideo, std::string> video = sim::ScenarioVideo::Create(*spec, config_.scene, *targets);
   if (!video) {
     detail_ = video.error();
     return CameraError::kUnsupported;
   }
   calibration = video->calibration();
-  worker_ = std::make_unique<Worker>(config_, *std::move(video));
+  worker_ = std::make_unique<Worker>(config_, *spec, *std::move(video));
   detail_.clear();
   return CameraError::kOk;
 }

@@ -15,13 +15,16 @@
 namespace wirepose::hal {
 
 struct SimulatedConfig {
-  std::uint64_t seed = 1;          // of the scenario, the camera's path and the noise
-  std::uint64_t frame_count = 30;  // length of the stream; 0: endless
-  std::filesystem::path mesh_dir;  // the objects: sim/target_mesh.h says what is read
-  double frame_rate_hz = 30;       // of the capture stamps and of the camera's motion, 1..1000
-  int samples_per_pixel = 16;      // 4, 9, 16, 25 or 36
-  // calib.yaml of the rig to simulate, see hal/dataset/calibration_file.h; empty: sim's own rig,
-  // 640x480.
+  std::filesystem::path scenario_path;  // sim/scenario_file.h; empty: a kitchen with some objects
+  int scene = 0;                        // of the scenario's
+  std::uint64_t frame_count = 30;       // length of the stream; 0: endless
+  std::filesystem::path mesh_dir;       // the objects: sim/target_mesh.h says what is read
+  // When set, these hold instead of the scenario's: see sim/scenario_spec.h.
+  std::optional<std::uint64_t> seed;
+  std::optional<double> frame_rate_hz;   // of the capture stamps and of the camera's motion, 1..1000
+  std::optional<int> samples_per_pixel;  // 4, 9, 16, 25 or 36
+  std::filesystem::path cache_path;
+  // calib.yaml of the rig to simulate, see hal/dataset/calibration_file.h; empty: the scenario's.
   std::filesystem::path calibration_path;
   // When set, one JSON object a line for every frame, written before the frame is given out:
   // {"sequence":0,"capture_time_ns":0,"objects":[{"obj_id":1,"name":"parcel_box","R":[9],"t":[3],"visib_fract":0.9}]}

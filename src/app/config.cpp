@@ -1,13 +1,16 @@
 #include "app/config.h"
 
+#include <limits>
+
 #include "app/failure.h"
-#include "app/yaml_section.h"
+#include "yaml/yaml_section.h"
 
 namespace wirepose::app {
 namespace {
 
+using yaml::YamlSection;
+
 constexpr std::int64_t kMaxFrames = 1'000'000'000;
-constexpr std::size_t kMaxFrameId = 63;  // bound of std_msgs::Header's frame_id in dds_idl
 
 hal::LibcameraConfig ReadLibcamera(YamlSection section) {
   hal::LibcameraConfig config;
@@ -44,20 +47,24 @@ hal::ReplayConfig ReadReplay(YamlSection section) {
 
 hal::SimulatedConfig ReadSimulated(YamlSection section) {
   hal::SimulatedConfig config;
-  std::int64_t seed = static_cast<std::int64_t>(config.seed);
+  std::int64_t seed = 0, scene = 0, samples = 0;
   std::int64_t frames = static_cast<std::int64_t>(config.frame_count);
-  std::int64_t samples = config.samples_per_pixel;
+  double rate_hz = 0;
   section.Read("meshes", config.mesh_dir);
+  section.Read("scenario", config.scenario_path);
+  section.Read("cache", config.cache_path);
   section.Read("calibration", config.calibration_path);
-  section.Read("seed", seed, 0, std::numeric_limits<std::int64_t>::max());
+  if (section.Read("seed", seed, 0, std::numeric_limits<std::int64_t>::max())) {
+    config.seed = static_cast<std::uint64_t>(seed);
+  }
+  section.Read("scene", scene, 0, 1'000'000);
   section.Read("frames", frames, 0, kMaxFrames);
-  section.Read("frame_rate_hz", config.frame_rate_hz, 1, 1000);
-  section.Read("samples_per_pixel", samples, 4, 36);
+  if (section.Read("frame_rate_hz", rate_hz, 1, 1000)) config.frame_rate_hz = rate_hz;
+  if (section.Read("samples_per_pixel", samples, 4, 36)) config.samples_per_pixel = static_cast<int>(samples);
   section.Read("truth_file", config.truth_path);
   section.Finish();
-  config.seed = static_cast<std::uint64_t>(seed);
+  config.scene = static_cast<int>(scene);
   config.frame_count = static_cast<std::uint64_t>(frames);
-  config.samples_per_pixel = static_cast<int>(samples);
   return config;
 }
 
@@ -77,16 +84,6 @@ CameraConfig ReadCamera(YamlSection section, const std::filesystem::path& file) 
   return config;
 }
 
-void ReadDds(YamlSection section, Config& config) {
-  std::int64_t domain = 0;
-  section.Read("domain", domain, 0, kMaxDomain);
-  section.Read("loopback", config.bus.loopback);
-  section.Read("frame_id", config.frame_id);
-  if (config.frame_id.size() > kMaxFrameId) section.Refuse("frame_id", "longer than 63 bytes");
-  section.Finish();
-  config.bus.domain = static_cast<std::uint32_t>(domain);
-}
-
 }  // namespace
 
 CameraBackend ParseCameraBackend(const std::string& name, const std::string& where) {
@@ -97,15 +94,19 @@ CameraBackend ParseCameraBackend(const std::string& name, const std::string& whe
 }
 
 Config LoadConfig(const std::filesystem::path& file) {
-  YamlSection section(file);
-  Config config;
-  config.file = file;
-  config.camera = ReadCamera(section.Section("camera"), file);
-  ReadDds(section.Section("dds"), config);
-  section.Read("models", config.models);
-  section.Read("search_for", config.search_for);
-  section.Finish();
-  return config;
+  try {
+    YamlSection section(file);
+    Config config;
+    config.file = file;
+    config.camera = ReadCamera(section.Section("camera"), file);
+    config.dds = ReadDds(section.Section("dds"));
+    section.Read("models", config.models);
+    section.Read("search_for", config.search_for);
+    section.Finish();
+    return config;
+  } catch (const yaml::YamlError& error) {
+    throw UsageError(error.what());
+  }
 }
 
 }  // namespace wirepose::app

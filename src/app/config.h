@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "app/dds_config.h"
 #include "hal/libcamera/libcamera_config.h"
 #include "hal/replay/replay_camera.h"
 #include "hal/simulated/simulated_camera.h"
-#include "publish/bus.h"
 
 namespace wirepose::app {
 
@@ -33,8 +33,7 @@ struct CameraConfig {
 struct Config {
   std::filesystem::path file;  // for messages
   CameraConfig camera;
-  BusConfig bus;
-  std::string frame_id = "wirepose_left_optical";
+  DdsConfig dds;
   std::vector<std::filesystem::path> models;  // .wpm files and folders of them
   std::vector<std::uint32_t> search_for;      // model ids; empty: all that were loaded
 };

@@ -77,6 +77,8 @@ void HealthMonitor::CameraFailed(hal::CameraError error, std::string_view detail
   SetError(Join(hal::Describe(error), detail));
 }
 
+void HealthMonitor::Paused() { SetState(HealthState::kPaused, "ok"); }
+
 void HealthMonitor::Stopped() { SetState(HealthState::kStopped, report_.camera_status); }
 
 bool HealthMonitor::Due(Clock::time_point now) const {

@@ -27,6 +27,8 @@ class HealthMonitor {
   void FrameDone(const RecognitionStatistics& statistics);
   void FrameFailed(std::uint64_t sequence, std::string_view reason);
   void CameraFailed(hal::CameraError error, std::string_view detail);
+  // A good frame arrived and was not looked at, as commanded.
+  void Paused();
   void Stopped();
 
   // True once state or camera status have changed since the last call of Sent, or a second has

@@ -9,10 +9,11 @@
 #include <optional>
 
 #include "app/camera_factory.h"
+#include "app/command_handler.h"
 #include "app/config.h"
 #include "app/failure.h"
 #include "app/memory_lock.h"
-#include "app/model_store.h"
+#include "app/model_library.h"
 #include "app/robot_loop.h"
 #include "app/service.h"
 #include "pipeline/recognizer.h"
@@ -22,8 +23,8 @@ namespace wirepose::app {
 namespace {
 
 // All large memory of the program.
-ModelStore g_models;
 Recognizer g_recognizer;
+ModelLibrary g_models(g_recognizer);
 Publisher g_publisher;
 
 std::atomic<bool> g_stop{false};
@@ -55,25 +56,15 @@ Config EffectiveConfig(const Options& options) {
   return config;
 }
 
-// Gives the recognizer the models that are searched for.
+// Gives the recognizer the models and says which are searched for.
 void AddModels(const Config& config) {
   g_models.Load(config.models);
+  ModelIds ids;
   for (const std::uint32_t id : config.search_for) {
-    const auto known = g_models.models();
-    if (std::none_of(known.begin(), known.end(), [id](const ModelView& m) { return m.id == id; })) {
-      throw WorkFailed(config.file.string() + ": search_for: no model file has the id " + std::to_string(id) +
-                       "; see `wirepose model show`");
-    }
+    if (!ids.try_push_back(id)) throw WorkFailed(config.file.string() + ": search_for: more than 16 ids; remove some");
   }
-  for (std::size_t i = 0; i < g_models.models().size(); ++i) {
-    const ModelView& model = g_models.models()[i];
-    const auto& wanted = config.search_for;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), model.id) == wanted.end()) continue;
-    const RecognizerError error = g_recognizer.AddModel(model);
-    if (error != RecognizerError::kOk) {
-      throw WorkFailed(g_models.file(i).string() + ": id " + std::to_string(model.id) + ": " + Describe(error));
-    }
-  }
+  const std::string refusal = g_models.Select(ids);
+  if (!refusal.empty()) throw WorkFailed(config.file.string() + ": search_for: " + refusal);
 }
 
 void CheckCamera(hal::CameraError error, const hal::StereoCamera& camera) {
@@ -95,18 +86,22 @@ void Run(const Options& options) {
   const std::unique_ptr<hal::StereoCamera> camera = CreateCamera(config);
   AddModels(config);
   OpenCamera(*camera);
-  const auto opened = g_publisher.Open({config.bus, config.frame_id, WIREPOSE_VERSION}, g_recognizer.models());
+  const DdsConfig& dds = config.dds;
+  const auto opened = g_publisher.Open({dds.bus, dds.frame_id, WIREPOSE_VERSION, dds.pool_bytes});
   if (!opened) throw WorkFailed(opened.error());
   if (const std::string warning = LockMemory(); !warning.empty()) std::fprintf(stderr, "wireposed: %s\n", warning.c_str());
   CheckCamera(camera->Start(), *camera);
 
   const std::string status = std::string(camera->name()) + " camera, " + std::to_string(g_recognizer.models().size()) +
-                             " models, DDS domain " + std::to_string(config.bus.domain);
+                             " models, DDS domain " + std::to_string(dds.bus.domain);
   std::fprintf(stderr, "wireposed: running: %s\n", status.c_str());
   Service service;
   service.Ready(status);
-  const auto loop = std::make_unique<RobotLoop>(*camera, g_recognizer, g_publisher, service,
-                                                RobotLoopConfig{config.camera.timeout, options.frames});
+  CommandHandler commands(g_recognizer, g_models, camera->calibration().width, camera->calibration().height);
+  const bool live = config.camera.backend == CameraBackend::kLibcamera;
+  const auto loop = std::make_unique<RobotLoop>(
+      RobotParts{*camera, g_recognizer, g_publisher, commands, service},
+      RobotLoopConfig{config.camera.timeout, options.frames, StampClock(dds.stamp, live)});
   loop->Run(g_stop);
   service.Stopping();
   (void)camera->Stop();

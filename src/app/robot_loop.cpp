@@ -17,14 +17,16 @@ constexpr std::chrono::milliseconds kRetryPause{100};
 
 }  // namespace
 
-RobotLoop::RobotLoop(hal::StereoCamera& camera, Recognizer& recognizer, Publisher& publisher, Service& service,
-                     const RobotLoopConfig& config)
-    : camera_(camera),
-      recognizer_(recognizer),
-      publisher_(publisher),
-      service_(service),
+RobotLoop::RobotLoop(const RobotParts& parts, const RobotLoopConfig& config)
+    : camera_(parts.camera),
+      recognizer_(parts.recognizer),
+      publisher_(parts.publisher),
+      commands_(parts.commands),
+      service_(parts.service),
       config_(config),
-      health_(camera.name(), HealthMonitor::Clock::now()) {}
+      health_(parts.camera.name(), HealthMonitor::Clock::now()) {
+  report_.models = LabelsOf(recognizer_.models(), recognizer_.searched());
+}
 
 void RobotLoop::Run(const std::atomic<bool>& stop) {
   SendHealthIfDue();
@@ -39,6 +41,7 @@ void RobotLoop::Run(const std::atomic<bool>& stop) {
     } else {
       more = HandleCameraError(lease.error());
     }
+    HandleCommands();
     SendHealthIfDue();
     service_.Alive(Service::Clock::now());
   }
@@ -51,6 +54,11 @@ void RobotLoop::HandleFrame(hal::FrameLease lease) {
   health_.FrameArrived(lease.frame(), camera_.detail());
   if (lease->status != hal::FrameStatus::kGood) return;
 
+  report_.stamp = config_.stamps.StampOf(lease->capture_time);
+  if (commands_.paused()) {
+    health_.Paused();
+    return;
+  }
   timer_.FrameBegins();
   const RecognizerError error = recognizer_.Process(lease->left, lease->right, &timer_, report_.result);
   timer_.FrameEnds();
@@ -62,7 +70,23 @@ void RobotLoop::HandleFrame(hal::FrameLease lease) {
     return;
   }
   health_.FrameDone(report_.result.statistics);
-  publisher_.Publish(report_);  // counts what it has to drop
+  publisher_.Publish(report_);  // counts what it has to give up
+  PublishScene();
+}
+
+void RobotLoop::PublishScene() {
+  if (!publisher_.SceneWanted()) return;
+  scene_.stamp = report_.stamp;
+  FillScene(recognizer_, report_.result, scene_);
+  publisher_.Publish(scene_);
+}
+
+void RobotLoop::HandleCommands() {
+  Command command;
+  while (publisher_.TakeCommand(command)) {
+    publisher_.Answer(commands_.Execute(command));
+    report_.models = LabelsOf(recognizer_.models(), recognizer_.searched());
+  }
 }
 
 bool RobotLoop::HandleCameraError(hal::CameraError error) {
@@ -97,8 +121,10 @@ void RobotLoop::SendHealthIfDue() {
   report.queue_capacity = static_cast<std::uint32_t>(publisher_.queue_capacity());
   report.results_dropped = publisher_.results_dropped();
   report.write_errors = publisher_.write_errors();
-  // When the queue is full the report stays due.
-  if (publisher_.Publish(report)) health_.Sent(now);
+  report.stamp = config_.stamps.StampOfNow(report_.stamp);
+  report.models = report_.models;
+  publisher_.Publish(report);
+  health_.Sent(now);
 }
 
 }  // namespace wirepose::app

@@ -6,9 +6,11 @@
 #include <chrono>
 #include <cstdint>
 
+#include "app/command_handler.h"
 #include "app/health_monitor.h"
 #include "app/service.h"
 #include "app/stage_timer.h"
+#include "app/stamp_clock.h"
 #include "hal/stereo_camera.h"
 #include "pipeline/recognizer.h"
 #include "publish/publisher.h"
@@ -18,14 +20,22 @@ namespace wirepose::app {
 struct RobotLoopConfig {
   std::chrono::nanoseconds frame_timeout;  // without a frame for that long: no_frames
   std::uint64_t max_frames = 0;            // frames of any status; 0: no end
+  StampClock stamps{StampSource::kSystem, false};
 };
 
-// Refers to its parts; they must outlive it. Run is called on one thread; allocates nothing while
-// frames are good.
+// What the loop joins. All outlive it.
+struct RobotParts {
+  hal::StereoCamera& camera;
+  Recognizer& recognizer;
+  Publisher& publisher;
+  CommandHandler& commands;
+  Service& service;
+};
+
+// Run is called on one thread; allocates nothing while frames are good and no command comes.
 class RobotLoop {
  public:
-  RobotLoop(hal::StereoCamera& camera, Recognizer& recognizer, Publisher& publisher, Service& service,
-            const RobotLoopConfig& config);
+  RobotLoop(const RobotParts& parts, const RobotLoopConfig& config);
 
   // Runs on a streaming camera until `stop` is set, the feed is over or max_frames have come. A bad
   // frame, a time-out and a lost camera are reported on health, and the loop goes on. Throws
@@ -36,6 +46,8 @@ class RobotLoop {
 
  private:
   void HandleFrame(hal::FrameLease lease);
+  void HandleCommands();
+  void PublishScene();
   // False at the end of the feed.
   bool HandleCameraError(hal::CameraError error);
   void SendHealthIfDue();
@@ -43,11 +55,13 @@ class RobotLoop {
   hal::StereoCamera& camera_;
   Recognizer& recognizer_;
   Publisher& publisher_;
+  CommandHandler& commands_;
   Service& service_;
   const RobotLoopConfig config_;
   HealthMonitor health_;
   StageTimer timer_;
   FrameReport report_;
+  SceneReport scene_;
   HealthMonitor::Clock::time_point waiting_since_;  // the last thing the camera did
   std::uint64_t frames_ = 0;
 };

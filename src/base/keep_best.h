@@ -34,7 +34,7 @@ class KeepBest {
     std::push_heap(items_.begin(), items_.end(), Better{});
   }
 
-  // Counts elements that were given up elsewhere on their way to this list.
+  // Counts elements that were given up before they were made.
   void CountDropped(std::uint32_t count) { dropped_ += count; }
 
   // True when `value` would be kept: lets callers skip the work of making it.

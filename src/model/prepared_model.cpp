@@ -123,9 +123,14 @@ void PrepareSets(PreparedModel& model) {
       return p.distance_m != q.distance_m ? p.distance_m < q.distance_m : p.other_edge < q.other_edge;
     });
     const auto corner_end = std::find_if(begin, model.members.end(), [](const PreparedMember& m) { return m.base_end == 2; });
-    model.sets.push_back({set.kind, set.base_edge, static_cast<std::uint16_t>(first),
-                          static_cast<std::uint16_t>(corner_end - model.members.begin()),
-                          static_cast<std::uint16_t>(model.members.size())});
+    PreparedSet prepared{set.kind, set.base_edge, static_cast<std::uint16_t>(first),
+                         static_cast<std::uint16_t>(corner_end - model.members.begin()),
+                         static_cast<std::uint16_t>(model.members.size())};
+    for (auto m = begin; m != model.members.end(); ++m) {
+      prepared.max_distance_m = std::max(prepared.max_distance_m, m->distance_m);
+      prepared.max_farthest_end_m = std::max(prepared.max_farthest_end_m, m->farthest_end_m);
+    }
+    model.sets.push_back(prepared);
   }
 }
 

@@ -37,6 +37,7 @@ struct PreparedSet {
   LineSetKind kind = LineSetKind::kParallel;
   std::uint16_t base_edge = 0;
   std::uint16_t first = 0, corner_end = 0, end = 0;
+  float max_distance_m = 0, max_farthest_end_m = 0;  // of all members
 };
 
 struct PreparedModel {

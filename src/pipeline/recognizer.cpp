@@ -3,6 +3,23 @@
 #include <algorithm>
 
 namespace wirepose {
+namespace {
+
+// Does the rectified pixel show a point of the raw image's region? Between the map's nodes the raw position moves by as
+// much as the rectified one, to within the lens's change of scale over half a node's step: less than a pixel.
+bool SeenIn(const ImageRegion& region, const RectificationMap& map, const Vector2& p) {
+  constexpr int kStep = RectificationMap::kNodeStep;
+  const int i = std::clamp(static_cast<int>(p.x()) / kStep, 0, RectificationMap::kNodesX - 1);
+  const int j = std::clamp(static_cast<int>(p.y()) / kStep, 0, RectificationMap::kNodesY - 1);
+  const auto& node = map.nodes[static_cast<std::size_t>(j * RectificationMap::kNodesX + i)];
+  const float x = static_cast<float>(node.x) / 65536.0F + p.x() - static_cast<float>(i * kStep);
+  const float y = static_cast<float>(node.y) / 65536.0F + p.y() - static_cast<float>(j * kStep);
+  const float left = region.x, top = region.y;
+  return x >= left && x < left + static_cast<float>(region.width) && y >= top &&
+         y < top + static_cast<float>(region.height);
+}
+
+}  // namespace
 
 const char* StageName(Stage stage) {
   switch (stage) {
@@ -52,12 +69,14 @@ RecognizerError Recognizer::AddModel(const ModelView& model) {
   views_.push_back(model);
   models_.resize(models_.size() + 1);
   PrepareModel(model, models_.back());
+  searched_ |= 1U << (models_.size() - 1);
   return RecognizerError::kOk;
 }
 
 void Recognizer::ClearModels() {
   views_.clear();
   models_.clear();
+  searched_ = 0;
 }
 
 std::span<const SetMember> Recognizer::line_set(std::size_t i) const {
@@ -80,10 +99,21 @@ RecognizerError Recognizer::Process(ImageView left, ImageView right, StageObserv
   StageTimer timer(observer);
   FindFeatures(left, right, timer, result.statistics);
   candidates_.clear();
-  for (std::size_t m = 0; m < models_.size(); ++m) MatchModel(m, timer, result);
+  for (std::size_t m = 0; m < models_.size(); ++m) {
+    if (Searched(m)) MatchModel(m, timer, result);
+  }
   Report(result);
   timer.Done(Stage::kSelect);
   return RecognizerError::kOk;
+}
+
+void Recognizer::KeepSegmentsInRegion() {
+  auto& items = left_segments_.items;
+  std::size_t kept = 0;
+  for (const Segment2& segment : items) {
+    if (SeenIn(region_, rectification_.left, segment.Middle())) items[kept++] = segment;
+  }
+  items.resize(kept);
 }
 
 void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics) {
@@ -101,10 +131,12 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
   };
   find(right_rectified_, rectification_.right, right_smooth_, right_edges_, right_segments_);
   find(left_rectified_, rectification_.left, left_smooth_, left_edges_, left_segments_);
+  if (!region_.Whole()) KeepSegmentsInRegion();
   timer.Done(Stage::kSegments);
 
   NormalizeLocally(View(left_rectified_), left_normalized_);
   NormalizeLocally(View(right_rectified_), right_normalized_);
+  ComputeDisparityMap(params_.disparity, width, height, left_normalized_, right_normalized_, disparity_scratch_, disparity_);
   MatchLines(params_.stereo, {camera(), left_normalized_, right_normalized_, right_smooth_, rectification_.right},
              left_segments_, stereo_scratch_, lines_);
   timer.Done(Stage::kStereoLines);
@@ -157,7 +189,7 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   timer.Done(Stage::kRefine);
 
   const VerifyInput input{camera(), left_edges_, right_edges_, left_normalized_, right_normalized_,
-                          left_smooth_, right_smooth_};
+                          left_smooth_, right_smooth_, disparity_};
   for (Candidate& candidate : refined) {
     GatherEvidence(params_.verify, input, model, candidate.pose.T_camera_model, verify_scratch_, candidate.evidence);
     candidate.score = ScoreOf(params_.select.score, candidate.evidence);
@@ -166,8 +198,16 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   timer.Done(Stage::kVerify);
 }
 
+// The last of the adjustment, with more samples and iterations; what it cannot improve stays.
+void Recognizer::Polish(Candidate& candidate) {
+  RefinedPose polished;
+  RefinePose(params_.polish, {camera(), left_smooth_, right_smooth_}, models_[candidate.model], candidate.pose.T_camera_model,
+             refine_scratch_, polished);
+  if (polished.ok) candidate.pose = polished;
+}
+
 void Recognizer::Report(RecognitionResult& result) {
-  const auto& candidates = candidates_.Sorted();
+  auto& candidates = candidates_.Sorted();
   std::uint32_t dropped = 0;
   SelectDetections(params_.select, camera(), left_edges_, {models_.begin(), models_.end()}, {candidates.begin(), candidates.end()},
                    verify_scratch_, claims_, accepted_, dropped);
@@ -177,7 +217,8 @@ void Recognizer::Report(RecognitionResult& result) {
   turn.topLeftCorner<3, 3>() = T_raw_rectified.R;
   turn.bottomRightCorner<3, 3>() = T_raw_rectified.R;
   for (const std::uint16_t i : accepted_) {
-    const Candidate& candidate = candidates[i];
+    Candidate& candidate = candidates[i];
+    Polish(candidate);
     Detection detection;
     detection.model_id = models_[candidate.model].view.id;
     detection.T_camera_model = T_raw_rectified * candidate.pose.T_camera_model;

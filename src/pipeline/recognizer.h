@@ -12,6 +12,7 @@
 #include "model/prepared_model.h"
 #include "pipeline/recognition.h"
 #include "stages/correspondences.h"
+#include "stages/disparity_map.h"
 #include "stages/edge_image.h"
 #include "stages/edge_map.h"
 #include "stages/hypotheses.h"
@@ -58,13 +59,22 @@ struct RecognizerParams {
   EdgeImageParams edges;
   SegmentParams segments;
   StereoLineParams stereo;
+  DisparityMapParams disparity;
   LineSetParams line_sets;
   CorrespondenceParams correspondences;
   HypothesisParams hypotheses;
   PromotionParams promotion;
-  RefineParams refine;
+  RefineParams refine{.iterations = 4, .samples = {.step_px = 14}};  // of candidates: near enough to be judged
+  RefineParams polish;                                               // of what is reported
   VerifyParams verify;
   SelectParams select;
+};
+
+// A rectangle of the raw left image; without area it stands for the whole image.
+struct ImageRegion {
+  std::uint16_t x = 0, y = 0, width = 0, height = 0;  // px
+  [[nodiscard]] bool Whole() const { return width == 0 || height == 0; }
+  bool operator==(const ImageRegion&) const = default;
 };
 
 // Tells the observer, if any.
@@ -91,6 +101,15 @@ class Recognizer {
   void ClearModels();
   [[nodiscard]] std::span<const ModelView> models() const { return {views_.begin(), views_.end()}; }
 
+  // Restricts the following frames to the models whose bit is set, by their order of addition. AddModel sets the new
+  // model's bit.
+  void SearchFor(std::uint32_t model_bits) { searched_ = model_bits; }
+  [[nodiscard]] std::uint32_t searched() const { return searched_; }
+  // Restricts the following frames to objects that show at least one line in the region: only left segments whose middle
+  // lies in it are used for matching. Evidence for and against a pose comes from the whole image as before.
+  void SetRegion(const ImageRegion& region) { region_ = region; }
+  [[nodiscard]] const ImageRegion& region() const { return region_; }
+
   // Recognizes every added model in a raw pair of the calibrated size. `observer` may be null. Bounded time: every loop
   // has a compile-time bound; a search that stops at its bound sets `budget_hit`.
   RecognizerError Process(ImageView left, ImageView right, StageObserver* observer, RecognitionResult& result);
@@ -102,6 +121,7 @@ class Recognizer {
   // Intermediates of the last Process, for overlays and tests. Rectified left frame; valid until the next call.
   [[nodiscard]] ImageView left_rectified() const { return View(left_rectified_); }
   [[nodiscard]] ImageView right_rectified() const { return View(right_rectified_); }
+  [[nodiscard]] const DisparityMap& disparity_map() const { return disparity_; }
   [[nodiscard]] std::span<const Segment2> left_segments() const { return {left_segments_.items.begin(), left_segments_.items.end()}; }
   [[nodiscard]] std::span<const Segment2> right_segments() const { return {right_segments_.items.begin(), right_segments_.items.end()}; }
   [[nodiscard]] std::span<const Line3> lines() const { return {lines_.begin(), lines_.end()}; }
@@ -124,8 +144,11 @@ class Recognizer {
   [[nodiscard]] ImageView View(const ImagePlane& plane) const {
     return {plane.data(), camera().width, camera().height, kMaxImageWidth};
   }
+  [[nodiscard]] bool Searched(std::size_t m) const { return ((searched_ >> m) & 1U) != 0; }
+  void KeepSegmentsInRegion();
   void FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics);
   void MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result);
+  void Polish(Candidate& candidate);
   void Report(RecognitionResult& result);
 
   RecognizerParams params_;
@@ -133,6 +156,9 @@ class Recognizer {
   Rectification rectification_;
   FixedVector<ModelView, kMaxModels> views_;
   FixedVector<PreparedModel, kMaxModels> models_;  // of the same models, in the same order
+  std::uint32_t searched_ = 0;                     // bit m: models_[m] takes part
+  static_assert(kMaxModels <= 32);
+  ImageRegion region_;
 
   // Per frame, in the order of the flow.
   ImagePlane left_rectified_, right_rectified_;
@@ -141,6 +167,7 @@ class Recognizer {
   EdgeImage edges_;  // of one eye at a time
   EdgeMap left_edges_, right_edges_;
   Segments left_segments_, right_segments_;
+  DisparityMap disparity_;
   Lines3 lines_;
   ImageLineSets line_sets_;
   // Per model.
@@ -153,6 +180,7 @@ class Recognizer {
 
   SegmentScratch segment_scratch_;
   StereoScratch stereo_scratch_;
+  DisparityScratch disparity_scratch_;
   RefineScratch refine_scratch_;
   VerifyScratch verify_scratch_;
   ClaimMap claims_;

@@ -2,20 +2,24 @@
 
 #include <cstdlib>
 #include <memory>
-#include <type_traits>
 
+#include "dds_idl/diagnostic_msgs.h"
 #include "dds_idl/vision_msgs.h"
+#include "dds_idl/visualization_msgs.h"
 #include "dds_idl/wirepose.h"
+#include "publish/security_settings.h"
 
 namespace wirepose {
 namespace {
 
-// Small buffers and stacks: one participant needs about 0.2 MB instead of Cyclone's 2.5.
+// Small buffers and stacks: one participant needs about 0.2 MB instead of Cyclone's 2.5. It calls out once a second, not
+// once in 30: peers whose lease ran out while the network was cut find each other again at once.
 constexpr char kSmall[] =
     R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain Id="any">
 <General><MaxMessageSize>8 KiB</MaxMessageSize></General>
 <Sizing><ReceiveBufferSize>72 KiB</ReceiveBufferSize><ReceiveBufferChunkSize>16 KiB</ReceiveBufferChunkSize></Sizing>
 <Internal><MultipleReceiveThreads>false</MultipleReceiveThreads></Internal>
+<Discovery><SPDPInterval>1 s</SPDPInterval></Discovery>
 <Threads><Thread Name="recv"><StackSize>128 KiB</StackSize></Thread></Threads>
 </Domain></CycloneDDS>)";
 
@@ -29,9 +33,10 @@ constexpr char kLoopback[] =
 
 std::string Settings(const BusConfig& config) {
   std::string settings = kSmall;
-  if (config.loopback) settings += std::string(",") + kLoopback;
+  if (config.loopback) settings.append(",").append(kLoopback);
+  if (config.security) settings.append(",").append(SecuritySettings(*config.security));
   if (const char* const uri = std::getenv("CYCLONEDDS_URI"); uri != nullptr && *uri != '\0') {
-    settings += std::string(",") + uri;
+    settings.append(",").append(uri);
   }
   return settings;
 }
@@ -42,35 +47,66 @@ std::string Failure(const std::string& what, dds_return_t code, const char* reme
 
 using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
-Qos MakeQos(const TopicSpec& topic) {
+// A burst of commands waits in the reader until the program has answered; what does not fit waits at the sender.
+constexpr std::int32_t kMaxWaitingCommands = 32;
+
+Qos MakeQos(TopicId id, const TopicSettings& topic, bool writer) {
   Qos qos(dds_create_qos(), &dds_delete_qos);
-  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, topic.depth);
-  dds_qset_durability(qos.get(), topic.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  dds_qset_reliability(qos.get(), topic.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                       DDS_MSECS(100));
+  if (id == TopicId::kCommand && !writer) {
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
+    dds_qset_resource_limits(qos.get(), kMaxWaitingCommands, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  } else {
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, topic.depth);
+  }
+  const bool transient = Spec(id).transient_local;
+  dds_qset_durability(qos.get(), transient ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, topic.depth, DDS_LENGTH_UNLIMITED,
                               DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  if (topic.deadline.count() > 0) dds_qset_deadline(qos.get(), DDS_MSECS(topic.deadline.count()));
   dds_qset_writer_data_lifecycle(qos.get(), false);  // as ROS 2's writers
+  if (const char* const hash = Spec(id).ros_hash; hash != nullptr) {
+    const std::string user_data = std::string("typehash=").append(hash).append(";");
+    dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
+  }
   return qos;
 }
 
-template <typename Create>
-Result<dds_entity_t, std::string> CreateEndpoint(dds_entity_t participant, const TopicSpec& spec, const char* kind,
-                                                 Create create) {
-  const Qos qos = MakeQos(spec);
-  const dds_entity_t topic = dds_create_topic(participant, spec.type, spec.name, nullptr, nullptr);
-  const dds_entity_t endpoint = topic < 0 ? topic : create(participant, topic, qos.get(), nullptr);
-  if (endpoint < 0) {
-    return unexpected(Failure(std::string("DDS ") + kind + " for topic " + spec.name, endpoint,
-                              "check that no other program uses the topic with another type"));
-  }
-  return endpoint;
+Result<dds_entity_t, std::string> Created(dds_entity_t endpoint, const char* kind, const TopicSettings& topic) {
+  if (endpoint >= 0) return endpoint;
+  return unexpected(Failure(std::string("DDS ") + kind + " for topic " + topic.name, endpoint,
+                            "check that no other program uses the topic with another type, and with security that the "
+                            "permissions allow it"));
 }
 
 }  // namespace
 
-const TopicSpec kDetectionsTopic = {"rt/wirepose/detections", &vision_msgs_msg_dds__Detection3DArray__desc, 4, false};
-const TopicSpec kRecognitionTopic = {"wirepose/recognition", &wirepose_Recognition_desc, 4, false};
-const TopicSpec kHealthTopic = {"wirepose/health", &wirepose_Health_desc, 1, true};
+const TopicSpec& Spec(TopicId topic) {
+  static const TopicSpec specs[kTopicCount] = {
+      {"detections", "rt/wirepose/detections", &vision_msgs_msg_dds__Detection3DArray__desc, 4, 4, false,
+       "RIHS01_793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018"},
+      {"recognition", "wirepose/recognition", &wirepose_Recognition_desc, 4, 4, false, nullptr},
+      {"health", "wirepose/health", &wirepose_Health_desc, 1, 1, true, nullptr},
+      {"markers", "rt/wirepose/markers", &visualization_msgs_msg_dds__MarkerArray__desc, 1, 1, false,
+       "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf"},
+      {"diagnostics", "rt/diagnostics", &diagnostic_msgs_msg_dds__DiagnosticArray__desc, 1, 1, false,
+       "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"},
+      {"command", "wirepose/command", &wirepose_Command_desc, 16, 16, false, nullptr},
+      {"command_status", "wirepose/command_status", &wirepose_CommandStatus_desc, 16, 16, false, nullptr},
+  };
+  return specs[static_cast<std::size_t>(topic)];
+}
+
+TopicTable DefaultTopics() {
+  TopicTable topics;
+  for (std::size_t i = 0; i < kTopicCount; ++i) {
+    const TopicSpec& spec = Spec(static_cast<TopicId>(i));
+    topics[i].name = spec.name;
+    topics[i].depth = spec.depth;
+  }
+  return topics;
+}
 
 Result<Bus, std::string> Bus::Open(const BusConfig& config) {
   const std::string where = "DDS domain " + std::to_string(config.domain);
@@ -78,7 +114,7 @@ Result<Bus, std::string> Bus::Open(const BusConfig& config) {
   // Somebody else in this process has opened the domain: its settings hold.
   const bool shared = domain == DDS_RETCODE_PRECONDITION_NOT_MET;
   if (domain < 0 && !shared) {
-    return unexpected(Failure(where, domain, "check CYCLONEDDS_URI and that the domain is 0 to 230"));
+    return unexpected(Failure(where, domain, "check CYCLONEDDS_URI, that the domain is 0 to 230, and the files of dds.security"));
   }
   DdsEntity owned_domain(shared ? 0 : domain);
   const dds_entity_t participant = dds_create_participant(config.domain, nullptr, nullptr);
@@ -87,15 +123,24 @@ Result<Bus, std::string> Bus::Open(const BusConfig& config) {
                               config.loopback ? "with loopback, at most 9 programs share a domain; end one"
                                               : "check that a network interface is up, or set dds.loopback"));
   }
-  return Bus(std::move(owned_domain), DdsEntity(participant));
+  return Bus(config.topics, std::move(owned_domain), DdsEntity(participant));
 }
 
-Result<dds_entity_t, std::string> Bus::CreateWriter(const TopicSpec& topic) const {
-  return CreateEndpoint(participant(), topic, "writer", dds_create_writer);
+Result<dds_entity_t, std::string> Bus::CreateWriter(TopicId id, SlotType* type) const {
+  const TopicSettings& settings = topics_[static_cast<std::size_t>(id)];
+  const dds_entity_t topic =
+      type != nullptr ? type->CreateTopic(participant(), settings.name.c_str())
+                      : dds_create_topic(participant(), Spec(id).type, settings.name.c_str(), nullptr, nullptr);
+  const Qos qos = MakeQos(id, settings, true);
+  return Created(topic < 0 ? topic : dds_create_writer(participant(), topic, qos.get(), nullptr), "writer", settings);
 }
 
-Result<dds_entity_t, std::string> Bus::CreateReader(const TopicSpec& topic) const {
-  return CreateEndpoint(participant(), topic, "reader", dds_create_reader);
+Result<dds_entity_t, std::string> Bus::CreateReader(TopicId id, const dds_listener_t* listener) const {
+  const TopicSettings& settings = topics_[static_cast<std::size_t>(id)];
+  const dds_entity_t topic =
+      dds_create_topic(participant(), Spec(id).type, settings.name.c_str(), nullptr, nullptr);
+  const Qos qos = MakeQos(id, settings, false);
+  return Created(topic < 0 ? topic : dds_create_reader(participant(), topic, qos.get(), listener), "reader", settings);
 }
 
 }  // namespace wirepose

@@ -5,31 +5,66 @@
 
 #include <dds/dds.h>
 
+#include <array>
+#include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "base/result.h"
+#include "publish/slot_type.h"
 
 namespace wirepose {
+
+// The topics, in the order of docs/dds.md.
+enum class TopicId : std::uint8_t {
+  kDetections,     // vision_msgs/Detection3DArray for ROS 2
+  kRecognition,    // everything known about a frame
+  kHealth,         // once a second and on change
+  kMarkers,        // visualization_msgs/MarkerArray for ROS 2
+  kDiagnostics,    // diagnostic_msgs/DiagnosticArray for ROS 2
+  kCommand,        // to wireposed
+  kCommandStatus,  // its answers
+};
+inline constexpr std::size_t kTopicCount = 7;
+
+// What is fixed about a topic, and the defaults of what is not.
+struct TopicSpec {
+  const char* key;   // in the configuration and on command lines
+  const char* name;  // default
+  const dds_topic_descriptor_t* type;
+  std::int32_t depth;      // default of TopicSettings::depth
+  std::int32_t max_depth;  // what the memory is made for
+  bool transient_local;    // who comes late gets the last samples
+  const char* ros_hash;    // of the ROS 2 type (REP-2016), told to others as rmw_cyclonedds does; nullptr: not ROS
+};
+const TopicSpec& Spec(TopicId topic);
+
+// What the configuration says about a topic.
+struct TopicSettings {
+  std::string name;
+  bool reliable = true;
+  std::int32_t depth = 1;                // keep-last: samples kept for a slow reader
+  std::chrono::milliseconds deadline{0};  // promised time from sample to sample; 0: none
+};
+using TopicTable = std::array<TopicSettings, kTopicCount>;
+TopicTable DefaultTopics();
+
+// PEM and signed files of DDS Security, as scripts/make-security creates them.
+struct SecurityFiles {
+  std::string identity_ca, certificate, private_key;
+  std::string permissions_ca, governance, permissions;
+};
 
 struct BusConfig {
   std::uint32_t domain = 0;  // 0..230, as ROS_DOMAIN_ID
   bool loopback = false;     // this machine only, without multicast
+  TopicTable topics = DefaultTopics();
+  std::optional<SecurityFiles> security;
 };
 
 inline constexpr std::uint32_t kMaxDomain = 230;  // above, the UDP ports of the DDS port formula run out
-
-// A topic of DESIGN's table; reliable and keep-last, all of them.
-struct TopicSpec {
-  const char* name;
-  const dds_topic_descriptor_t* type;
-  std::int32_t depth;    // samples kept for a slow reader
-  bool transient_local;  // who comes late gets the last samples
-};
-extern const TopicSpec kDetectionsTopic;   // rt/wirepose/detections, vision_msgs/Detection3DArray for ROS 2
-extern const TopicSpec kRecognitionTopic;  // wirepose/recognition
-extern const TopicSpec kHealthTopic;       // wirepose/health
 
 // Owns a DDS entity and with it all that was created from it.
 class DdsEntity {
@@ -59,13 +94,18 @@ class Bus {
  public:
   static Result<Bus, std::string> Open(const BusConfig& config);
 
-  // The handles live as long as the bus.
-  [[nodiscard]] Result<dds_entity_t, std::string> CreateWriter(const TopicSpec& topic) const;
-  [[nodiscard]] Result<dds_entity_t, std::string> CreateReader(const TopicSpec& topic) const;
+  // The handles live as long as the bus. With a slot type the writer works in its memory, and the type must outlive the
+  // bus; without, in Cyclone's.
+  [[nodiscard]] Result<dds_entity_t, std::string> CreateWriter(TopicId topic, SlotType* type = nullptr) const;
+  [[nodiscard]] Result<dds_entity_t, std::string> CreateReader(TopicId topic,
+                                                               const dds_listener_t* listener = nullptr) const;
   [[nodiscard]] dds_entity_t participant() const { return participant_.get(); }
 
  private:
-  Bus(DdsEntity domain, DdsEntity participant) : domain_(std::move(domain)), participant_(std::move(participant)) {}
+  Bus(TopicTable topics, DdsEntity domain, DdsEntity participant)
+      : topics_(std::move(topics)), domain_(std::move(domain)), participant_(std::move(participant)) {}
+
+  TopicTable topics_;
 
   DdsEntity domain_;  // ends after the participant
   DdsEntity participant_;

@@ -4,33 +4,19 @@
 #include <charconv>
 #include <iterator>
 
+#include "publish/message_parts.h"
+
 namespace wirepose {
 namespace {
-
-constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 // Bounds of the IDL files, which cannot see capacities.h.
 static_assert(kMaxDetections == 16 && kMaxModes == 4 && kMaxModels == 16 && kMaxModelName == 32 && kStageCount == 9,
               "change the bounds in dds_idl/*.idl too");
 
-template <typename Sequence, typename Buffer>
-void Attach(Sequence& sequence, Buffer& buffer) {
-  sequence._maximum = static_cast<std::uint32_t>(buffer.size());
-  sequence._length = 0;
-  sequence._buffer = buffer.data();
-  sequence._release = false;
-}
-
-template <std::size_t kSize>
-void CopyText(std::string_view text, char (&out)[kSize]) {
-  const FixedText<kSize> cut(text);
-  std::copy_n(cut.c_str(), kSize, out);
-}
-
-const ModelView* FindModel(std::span<const ModelView> models, std::uint32_t id) {
-  const auto found =
-      std::find_if(models.begin(), models.end(), [id](const ModelView& model) { return model.id == id; });
-  return found == models.end() ? nullptr : &*found;
+const ModelLabel* FindModel(const ModelLabels& models, std::uint32_t id) {
+  const auto* const found =
+      std::find_if(models.begin(), models.end(), [id](const ModelLabel& model) { return model.id == id; });
+  return found == models.end() ? nullptr : found;
 }
 
 // The decimal number as text.
@@ -41,14 +27,9 @@ FixedText<32> TextOf(std::uint32_t number) {
 }
 
 // A nameless model is called by its number.
-FixedText<32> ModelName(std::span<const ModelView> models, std::uint32_t id) {
-  const ModelView* const model = FindModel(models, id);
-  return model == nullptr || model->name.empty() ? TextOf(id) : FixedText<32>(model->name);
-}
-
-geometry_msgs_msg_dds__Pose_ RosPose(const Pose& T) {
-  const std::array<double, 4> q = QuaternionOf(T.R);
-  return {{T.t.x(), T.t.y(), T.t.z()}, {q[0], q[1], q[2], q[3]}};
+FixedText<32> ModelName(const ModelLabels& models, std::uint32_t id) {
+  const ModelLabel* const model = FindModel(models, id);
+  return model == nullptr || model->name == "" ? TextOf(id) : model->name;
 }
 
 wirepose_Pose NativePose(const Pose& T) {
@@ -56,18 +37,7 @@ wirepose_Pose NativePose(const Pose& T) {
   return {{T.t.x(), T.t.y(), T.t.z()}, {q[0], q[1], q[2], q[3]}};
 }
 
-std_msgs_msg_dds__Header_ Header(CaptureTime time, std::string_view frame_id) {
-  const std::int64_t ns = time.time_since_epoch().count();
-  std::int64_t rest = ns % kNanosecondsPerSecond;
-  if (rest < 0) rest += kNanosecondsPerSecond;  // nanosec counts forward from sec, also before 0
-  std_msgs_msg_dds__Header_ header{};
-  header.stamp.sec = static_cast<std::int32_t>((ns - rest) / kNanosecondsPerSecond);
-  header.stamp.nanosec = static_cast<std::uint32_t>(rest);
-  CopyText(frame_id, header.frame_id);
-  return header;
-}
-
-vision_msgs_msg_dds__BoundingBox3D_ Box(const Pose& T, const ModelView* model) {
+vision_msgs_msg_dds__BoundingBox3D_ Box(const Pose& T, const ModelLabel* model) {
   if (model == nullptr) return {RosPose(T), {0, 0, 0}};
   const Vector3d low = model->box_min_m.cast<double>();
   const Vector3d high = model->box_max_m.cast<double>();
@@ -88,7 +58,7 @@ FixedVector<PoseMode, kMaxModes> ModesOf(const Detection& detection) {
   return modes;
 }
 
-void FillRosDetection(const Detection& detection, std::span<const ModelView> models,
+void FillRosDetection(const Detection& detection, const ModelLabels& models,
                       const std_msgs_msg_dds__Header_& header, vision_msgs_msg_dds__Detection3D_& out) {
   const FixedText<32> name = ModelName(models, detection.model_id);
   const std::array<double, 36> covariance = RosCovariance(detection.covariance);
@@ -105,7 +75,7 @@ void FillRosDetection(const Detection& detection, std::span<const ModelView> mod
   CopyText(detection.track_id == 0 ? FixedText<32>() : TextOf(detection.track_id), out.id);
 }
 
-void FillNativeDetection(const Detection& detection, std::span<const ModelView> models, wirepose_Detection& out) {
+void FillNativeDetection(const Detection& detection, const ModelLabels& models, wirepose_Detection& out) {
   const std::array<double, 36> covariance = RosCovariance(detection.covariance);
   out.model_id = detection.model_id;
   CopyText(ModelName(models, detection.model_id), out.name);
@@ -145,6 +115,9 @@ void FillLists(const RecognitionStatistics& statistics, dds_sequence_wirepose_Li
   }
 }
 
+// Pool sizes are far below 4 GiB.
+std::uint32_t Narrow(std::size_t bytes) { return static_cast<std::uint32_t>(bytes); }
+
 wirepose_HealthState NativeState(HealthState state) {
   switch (state) {
     case HealthState::kStarting:
@@ -157,6 +130,8 @@ wirepose_HealthState NativeState(HealthState state) {
       return wirepose_NO_FRAMES;
     case HealthState::kCameraLost:
       return wirepose_CAMERA_LOST;
+    case HealthState::kPaused:
+      return wirepose_PAUSED;
     case HealthState::kStopped:
       return wirepose_STOPPED;
   }
@@ -177,6 +152,8 @@ const char* Describe(HealthState state) {
       return "no_frames";
     case HealthState::kCameraLost:
       return "camera_lost";
+    case HealthState::kPaused:
+      return "paused";
     case HealthState::kStopped:
       return "stopped";
   }
@@ -221,33 +198,31 @@ std::array<double, 36> RosCovariance(const Matrix6d& covariance) {
   return out;
 }
 
-void FillMessage(const FrameReport& report, std::span<const ModelView> models, std::string_view frame_id,
-                 DetectionsMessage& message) {
-  message.value.header = Header(report.capture_time, frame_id);
+void FillMessage(const FrameReport& report, std::string_view frame_id, DetectionsMessage& message) {
+  message.value.header = RosHeader(report.stamp, frame_id);
   auto& out = message.value.detections;
   out._length = 0;
   for (const Detection& detection : report.result.detections) {
-    FillRosDetection(detection, models, message.value.header, out._buffer[out._length++]);
+    FillRosDetection(detection, report.models, message.value.header, out._buffer[out._length++]);
   }
 }
 
-void FillMessage(const FrameReport& report, std::span<const ModelView> models, std::string_view frame_id,
-                 RecognitionMessage& message) {
+void FillMessage(const FrameReport& report, std::string_view frame_id, RecognitionMessage& message) {
   message.value.frame_sequence = report.sequence;
   message.value.capture_time_ns = report.capture_time.time_since_epoch().count();
+  message.value.stamp_ns = report.stamp.count();
   CopyText(frame_id, message.value.frame_id);
   auto& out = message.value.detections;
   out._length = 0;
   for (const Detection& detection : report.result.detections) {
-    FillNativeDetection(detection, models, out._buffer[out._length++]);
+    FillNativeDetection(detection, report.models, out._buffer[out._length++]);
   }
   FillLists(report.result.statistics, message.value.lists);
   message.value.budget_hit = report.result.budget_hit;
-  message.value.results_dropped = report.results_dropped;
+  message.value.results_dropped = 0;
 }
 
-void FillMessage(const HealthReport& report, std::span<const ModelView> models, std::string_view version,
-                 HealthMessage& message) {
+void FillMessage(const HealthReport& report, std::string_view version, HealthMessage& message) {
   wirepose_Health& out = message.value;
   out.state = NativeState(report.state);
   CopyText(version, out.version);
@@ -270,12 +245,17 @@ void FillMessage(const HealthReport& report, std::span<const ModelView> models, 
   out.queue_capacity = report.queue_capacity;
   out.results_dropped = report.results_dropped;
   out.write_errors = report.write_errors;
+  out.pool = {Narrow(report.pool.used), Narrow(report.pool.high_water), Narrow(report.pool.capacity)};
+  const BusEvents& events = report.events;
+  out.events = {events.subscribers, events.deadlines_missed, events.incompatible_qos, events.commands_accepted,
+                events.commands_refused};
   out.models._length = 0;
-  for (const ModelView& model : models.first(std::min(models.size(), kMaxModels))) {
+  for (const ModelLabel& model : report.models) {
     wirepose_ModelStatus& entry = out.models._buffer[out.models._length++];
     entry.id = model.id;
     CopyText(model.name, entry.name);
     entry.checksum = model.checksum;
+    entry.searched = model.searched;
   }
 }
 

@@ -1,39 +1,43 @@
 #include "publish/outbox.h"
 
-#include <new>
-
-#include "base/check.h"
-
 namespace wirepose {
 
-bool Outbox::Offer(const FrameReport& report) {
-  void* const block = pool_.Alloc();
-  if (block != nullptr) {
-    auto* const copy = new (block) FrameReport(report);
-    copy->results_dropped = dropped();
-    if (frames_.try_push(copy)) {
-      ready_.release();
-      return true;
-    }
-    Check(pool_.Free(block) == PoolStatus::kOk);
-  }
-  dropped_.fetch_add(1, std::memory_order_relaxed);
-  return false;
+void Outbox::Offer(const FrameReport& report) {
+  if (frames_.Put(report)) dropped_.fetch_add(1, std::memory_order_relaxed);
+  ready_.release();
 }
 
-bool Outbox::Offer(const HealthReport& report) {
-  if (!health_.try_push(report)) return false;
+void Outbox::Offer(const SceneReport& scene) {
+  scenes_.Put(scene);
+  ready_.release();
+}
+
+void Outbox::Offer(const HealthReport& report) {
+  health_.Put(report);
+  ready_.release();
+}
+
+bool Outbox::Offer(const CommandAnswer& answer) {
+  if (!answers_.try_push(answer)) return false;
   ready_.release();
   return true;
 }
 
-const FrameReport* Outbox::TakeFrame() {
-  FrameReport* report = nullptr;
-  return frames_.try_pop(report) ? report : nullptr;
+const FrameReport* Outbox::TakeFrame(std::uint64_t& dropped) {
+  std::uint64_t number = 0;
+  const FrameReport* const report = frames_.Take(number);
+  if (report != nullptr) dropped = number - taken_++;
+  return report;
 }
 
-void Outbox::Release(const FrameReport* report) {
-  Check(pool_.Free(const_cast<FrameReport*>(report)) == PoolStatus::kOk);
+const SceneReport* Outbox::TakeScene() {
+  std::uint64_t number = 0;
+  return scenes_.Take(number);
+}
+
+const HealthReport* Outbox::TakeHealth() {
+  std::uint64_t number = 0;
+  return health_.Take(number);
 }
 
 }  // namespace wirepose

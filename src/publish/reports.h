@@ -3,45 +3,37 @@
 #ifndef WIREPOSE_PUBLISH_REPORTS_H_
 #define WIREPOSE_PUBLISH_REPORTS_H_
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
-#include <string_view>
+#include <span>
 
 #include "base/fixed_vector.h"
 #include "base/time.h"
+#include "model/model_view.h"
 #include "pipeline/recognition.h"
+#include "publish/fixed_heap.h"
+#include "publish/fixed_text.h"
 
 namespace wirepose {
 
-// Text in place, zero-terminated. Longer text is cut at the end of a whole UTF-8 character.
-template <std::size_t kCapacity>
-class FixedText {
- public:
-  FixedText() = default;
-  FixedText(std::string_view text) { *this = text; }  // NOLINT(google-explicit-constructor)
-  FixedText& operator=(std::string_view text) {
-    std::size_t size = text.size() < kCapacity ? text.size() : kCapacity - 1;
-    // Bytes 10xxxxxx continue a character: do not cut before one.
-    while (size < text.size() && size > 0 && (text[size] & '\xC0') == '\x80') --size;
-    text.copy(chars_.data(), size);
-    chars_[size] = '\0';
-    return *this;
-  }
-  [[nodiscard]] const char* c_str() const { return chars_.data(); }
-  operator std::string_view() const { return chars_.data(); }  // NOLINT(google-explicit-constructor)
-  bool operator==(std::string_view other) const { return std::string_view(*this) == other; }
-  bool operator==(const FixedText& other) const { return *this == std::string_view(other); }
-
- private:
-  std::array<char, kCapacity> chars_{};
+// What messages say of a model that is loaded.
+struct ModelLabel {
+  std::uint32_t id = 0;
+  std::uint32_t checksum = 0;
+  FixedText<kMaxModelName> name;
+  Vector3 box_min_m = Vector3::Zero(), box_max_m = Vector3::Zero();  // model frame
+  bool searched = true;
 };
+using ModelLabels = FixedVector<ModelLabel, kMaxModels>;
+
+// The labels of models; bit i of `searched`: models[i] is searched for.
+ModelLabels LabelsOf(std::span<const ModelView> models, std::uint32_t searched);
 
 // One good frame and what was recognized in it.
 struct FrameReport {
   std::uint64_t sequence = 0;
   CaptureTime capture_time{};
-  std::uint64_t results_dropped = 0;  // filled in by Outbox::Offer
+  std::chrono::nanoseconds stamp{0};  // the same moment for header.stamp of the ROS messages
+  ModelLabels models;
   RecognitionResult result;
 };
 
@@ -53,6 +45,7 @@ enum class HealthState : std::uint8_t {
   kNoFrames,    // the camera is there, no frame within the time-out
   kCameraLost,  // the camera is gone; the program tries again
   kStopped,     // ended in order; the last message
+  kPaused,      // by command: frames are taken, nothing is recognized
 };
 const char* Describe(HealthState state);
 
@@ -73,9 +66,18 @@ struct StageTime {
 // Every stage and the whole frame.
 using StageTimes = FixedVector<StageTime, kStageCount + 1>;
 
+// What happened to writers and readers since the start; `subscribers` is now.
+struct BusEvents {
+  std::uint32_t subscribers = 0;
+  std::uint32_t deadlines_missed = 0;
+  std::uint32_t incompatible_qos = 0;
+  std::uint32_t commands_accepted = 0, commands_refused = 0;
+};
+
 struct HealthReport {
   HealthState state = HealthState::kStarting;
   std::uint64_t uptime_ns = 0;
+  std::chrono::nanoseconds stamp{0};  // of the report, for header.stamp
   FrameCounts frames;
   FixedText<32> camera;         // backend
   FixedText<64> camera_status;  // "ok", or what is wrong now
@@ -84,6 +86,9 @@ struct HealthReport {
   RecognitionStatistics lists;  // highest use and sum of drops since the start
   std::uint32_t queue_high_water = 0, queue_capacity = 0;
   std::uint64_t results_dropped = 0, write_errors = 0;
+  HeapUse pool;  // of DDS
+  BusEvents events;
+  ModelLabels models;
 };
 
 }  // namespace wirepose

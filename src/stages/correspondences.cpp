@@ -67,8 +67,10 @@ class Matcher {
       return;
     }
     if (pair.kind != set.kind) return;
-    // Members whose distance agrees: a few of the rest by binary search, and those at a corner when the lines may meet.
     const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
+    // Most pairs of a scene are too far apart for any member.
+    if (pair.farthest_end_m > set.max_farthest_end_m * (1 + params_.length_tolerance) + slack) return;
+    // Members whose distance agrees: a few of the rest by binary search, and those at a corner when the lines may meet.
     const float high = (pair.distance_m + slack) / (1 - params_.length_tolerance);
     const float low = (pair.distance_m - slack) / (1 + params_.length_tolerance);
     MatchRange(set, set.first, set.corner_end, low, high, pair);
@@ -124,7 +126,11 @@ class Matcher {
   }
 
   void Collect(const CorrespondingPair& match) {
-    if (!matches_.try_push_back(match)) ++out_of_room_;
+    // With the most that promotion can add it would still be dropped: it only counts for the others.
+    CorrespondingPair best = match;
+    best.rank += params_.promotion * static_cast<float>(params_.max_promotions);
+    if (!out_.WouldKeep(best) || !matches_.try_push_back(match)) out_.CountDropped(1);
+    collected_ = true;
     EdgeBits& edges = edges_[match.base_flipped];
     edges[match.other_edge / 32] |= 1U << (match.other_edge % 32);
   }
@@ -132,6 +138,8 @@ class Matcher {
   // Corresponding sets that share the base line and its edge are promoted: each ranks by the number of model edges
   // that found an image line under this assignment.
   void Promote() {
+    if (!collected_) return;
+    collected_ = false;
     float promotion[2];
     for (std::size_t flip = 0; flip < 2; ++flip) {
       int count = 0;
@@ -144,8 +152,6 @@ class Matcher {
       out_.Push(match);
     }
     matches_.clear();
-    out_.CountDropped(out_of_room_);
-    out_of_room_ = 0;
   }
 
   const CorrespondenceParams& params_;
@@ -159,8 +165,8 @@ class Matcher {
   float base_cover_ = 0;
   std::uint16_t assigned_edge_ = kNoFace;
   FixedVector<CorrespondingPair, 2048> matches_;
+  bool collected_ = false;  // anything since the last promotion
   EdgeBits edges_[2] = {};
-  std::uint32_t out_of_room_ = 0;
   WorkBudget budget_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/simd.h"
 
@@ -59,14 +60,27 @@ WIREPOSE_VECTOR_KERNEL void ComputeGradient(const SmoothPlane& smooth, EdgeImage
   }
 }
 
-// The larger gradient component tells the direction in which neighbours are compared. One side compares with >=, so
-// that a plateau of two equal pixels yields one ridge pixel.
-Ridge ClassifyPixel(const EdgeImage& image, std::size_t i) {
-  const int m = image.magnitude[i];
-  const bool across_x = std::abs(int{image.gx[i]}) >= std::abs(int{image.gy[i]});
-  const std::size_t step = across_x ? 1 : kStride;
-  if (m <= image.magnitude[i - step] || m < image.magnitude[i + step]) return Ridge::kNone;
-  return across_x ? Ridge::kAcrossX : Ridge::kAcrossY;
+// Marks the ridge pixels of columns [begin, end) of a row. The larger gradient component tells the direction in which
+// neighbours are compared. One side compares with >=, so that a plateau of two equal pixels yields one ridge pixel.
+WIREPOSE_VECTOR_KERNEL void MarkRidges(const EdgeImage& image, int y, int begin, int end, std::uint16_t threshold,
+                                       std::uint8_t* ridge) {
+  const std::ptrdiff_t row = y * kStride;
+  const std::int16_t* gx = image.gx.data() + row;
+  const std::int16_t* gy = image.gy.data() + row;
+  const std::uint16_t* here = image.magnitude.data() + row;
+  // Sixteen bits until the end: lanes of one width.
+  constexpr std::uint16_t kNone = 0, kAcrossX = static_cast<std::uint16_t>(Ridge::kAcrossX), kAcrossY = static_cast<std::uint16_t>(Ridge::kAcrossY);
+  std::array<std::uint16_t, kMaxImageWidth> kinds;
+  for (int x = begin; x < end; ++x) {
+    const auto ax = static_cast<std::int16_t>(std::abs(int{gx[x]})), ay = static_cast<std::int16_t>(std::abs(int{gy[x]}));
+    const std::uint16_t m = here[x], left = here[x - 1], right = here[x + 1], above = here[x - kStride], below = here[x + kStride];
+    // Without && nothing branches, and the loop vectorizes.
+    const std::uint16_t by_x = static_cast<std::uint16_t>((m > left) & (m >= right)) * kAcrossX;
+    const std::uint16_t by_y = static_cast<std::uint16_t>((m > above) & (m >= below)) * kAcrossY;
+    const std::uint16_t kind = ax >= ay ? by_x : by_y;
+    kinds[static_cast<std::size_t>(x)] = m >= threshold ? kind : kNone;
+  }
+  for (int x = begin; x < end; ++x) ridge[x] = static_cast<std::uint8_t>(kinds[static_cast<std::size_t>(x)]);
 }
 
 // Counting sort of the collected ridge pixels by falling magnitude, stable in the order of rows.
@@ -89,14 +103,15 @@ std::size_t BucketOf(std::uint16_t magnitude) { return std::min<std::size_t>(mag
 template <typename Use>
 void ForEachRidge(const RectificationMap& map, std::uint16_t threshold, EdgeImage& image, const Use& use) {
   for (int y = kBorder; y < image.height - kBorder; ++y) {
-    const auto [begin, end] = map.valid[static_cast<std::size_t>(y)];
-    for (int x = begin + kBorder; x < end - kBorder; ++x) {
-      const std::size_t i = EdgeImage::Index(x, y);
-      if (image.magnitude[i] < threshold) continue;
-      const Ridge ridge = ClassifyPixel(image, i);
-      if (ridge == Ridge::kNone) continue;
-      image.ridge[i] = static_cast<std::uint8_t>(ridge);
-      use(static_cast<std::uint32_t>(i));
+    const auto [first, last] = map.valid[static_cast<std::size_t>(y)];
+    const int begin = first + kBorder, end = last - kBorder;
+    std::uint8_t* row = image.ridge.data() + EdgeImage::Index(0, y);
+    MarkRidges(image, y, begin, end, threshold, row);
+    for (int x = begin; x < end; ++x) {
+      // Most pixels are none: eight at a time.
+      std::uint64_t eight = 0;
+      while (x + 8 <= end && (std::memcpy(&eight, row + x, 8), eight == 0)) x += 8;
+      if (x < end && row[x] != 0) use(static_cast<std::uint32_t>(EdgeImage::Index(x, y)));
     }
   }
 }

@@ -20,8 +20,8 @@ struct EdgeMap {
   float threshold = 0;   // gradient from which on a pixel may be an edge in this image, kGradientOne
   float background = 0;  // share of (pixel, direction) pairs that are set: the rate at which a random edge is supported
 
-  // Direction index 0..15 of an edge along (dx, dy), without trigonometry: the half turn is cut into eight sectors of
-  // equal tangent differences, close enough to equal angles for a tolerance of one and a half sectors.
+  // Direction index 0..15 of an edge along (dx, dy), without trigonometry: the half turn is cut into sixteen
+  // sectors of 11.25 degrees.
   static int Direction(float dx, float dy) {
     // Tangents of 11.25, 22.5 and 33.75 degrees: sector borders within 45 degrees.
     const float ax = std::abs(dx), ay = std::abs(dy);
@@ -38,8 +38,11 @@ struct EdgeMap {
   }
   // Requires Contains(x, y).
   [[nodiscard]] bool HasEdge(float x, float y, int direction) const {
-    const auto i = EdgeImage::Index(static_cast<int>(x + 0.5F), static_cast<int>(y + 0.5F));
-    return ((directions[i] >> direction) & 1U) != 0;
+    return HasEdgeAt(static_cast<int>(x + 0.5F), static_cast<int>(y + 0.5F), direction);
+  }
+  // Of the pixel itself; it lies in the map.
+  [[nodiscard]] bool HasEdgeAt(int x, int y, int direction) const {
+    return ((directions[EdgeImage::Index(x, y)] >> direction) & 1U) != 0;
   }
 };
 

@@ -39,6 +39,9 @@ class EdgeProfile {
     }
   }
 
+  // Gradient (kGradientOne) at a whole offset within the range, from the predicted edge.
+  [[nodiscard]] float GradientAt(int offset) const { return Gradient(middle_ + offset); }
+
  private:
   [[nodiscard]] float Gradient(int k) const {
     return value_[static_cast<std::size_t>(k + 1)] - value_[static_cast<std::size_t>(k - 1)];

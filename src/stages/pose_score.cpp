@@ -71,16 +71,25 @@ void PoseScorer::AddSupport(const EdgeMap& map, const LogGain& gain, const Vecto
   const Vector2 d = b - a;
   const int direction = EdgeMap::Direction(d.x(), d.y());
   const float step = 1 / static_cast<float>(n);
-  for (int k = 0; k < n; ++k) {
-    const float s = (static_cast<float>(k) + 0.5F) * step;
-    const float x = a.x() + s * d.x();
-    const float y = a.y() + s * d.y();
-    if (!map.Contains(x, y)) continue;
-    const bool hit = map.HasEdge(x, y, direction);
-    ++out.inside;
-    out.hits += hit ? 1 : 0;
-    out.sum += hit ? gain.hit : gain.miss;
+  int inside = n, hits = 0;
+  if (map.Contains(a.x(), a.y()) && map.Contains(b.x(), b.y())) {
+    // Fixed point, rounded to the pixel: no test and no conversion a sample.
+    constexpr float kOne = 65536;
+    const auto dx = static_cast<int>(d.x() * step * kOne), dy = static_cast<int>(d.y() * step * kOne);
+    int x = static_cast<int>((a.x() + 0.5F) * kOne) + dx / 2, y = static_cast<int>((a.y() + 0.5F) * kOne) + dy / 2;
+    for (int k = 0; k < n; ++k, x += dx, y += dy) hits += map.HasEdgeAt(x >> 16, y >> 16, direction) ? 1 : 0;
+  } else {
+    inside = 0;
+    for (int k = 0; k < n; ++k) {
+      const Vector2 p = a + (static_cast<float>(k) + 0.5F) * step * d;
+      if (!map.Contains(p.x(), p.y())) continue;
+      ++inside;
+      hits += map.HasEdge(p.x(), p.y(), direction) ? 1 : 0;
+    }
   }
+  out.inside += inside;
+  out.hits += hits;
+  out.sum += static_cast<float>(hits) * gain.hit + static_cast<float>(inside - hits) * gain.miss;
 }
 
 }  // namespace wirepose

@@ -4,8 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/portable_math.h"
-#include "stages/edge_profile.h"
+#include "stages/edge_evidence.h"
 
 namespace wirepose {
 namespace {
@@ -100,110 +99,14 @@ class EvidenceGatherer {
     SampleVisibleEdges(params_.samples, in_.camera, model_, T_, scratch_.front, scratch_.samples);
     for (const EdgeSample& s : scratch_.samples) seen_[s.edge] = true;
     if (!model_.convex) FindFrontTriangles(in_.camera, model_.view, T_, scratch_.front);
-    Edges();
+    GatherEdgeEvidence(params_, in_, model_, eye_, scratch_.samples, out_);
+    RenderSurface(in_.camera, model_, T_, scratch_.surface);
+    GatherSurfaceEvidence(params_.surface, in_.disparity, scratch_.surface, out_.surface);
     for (std::size_t f = 0; f < model_.view.faces.size(); ++f) Face(f);
     Overrun();
   }
 
  private:
-  // Support of one model edge: samples in both images, hits at the edge itself and beside it.
-  struct EdgeSupport {
-    float length_px = 0, samples = 0, hits = 0, chances = 0, chance_hits = 0, supported_px = 0;
-  };
-
-  void Edges() {
-    std::array<EdgeSupport, kMaxModelEdges> support{};
-    float inside = 0, total = 0, supported = 0;
-    for (const EdgeSample& s : scratch_.samples) {
-      total += s.weight_px;
-      if (!in_.left_edges.Contains(s.left.x(), s.left.y())) continue;
-      inside += s.weight_px;
-      support[s.edge].length_px += s.weight_px;
-      if (!Test(s, support[s.edge])) continue;
-      supported += s.weight_px;
-      support[s.edge].supported_px += s.weight_px;
-    }
-    EdgeSupport all;
-    for (const EdgeSupport& e : support) {
-      out_.edges += LogRatio(e);
-      all.samples += e.samples;
-      all.hits += e.hits;
-      all.chances += e.chances;
-      all.chance_hits += e.chance_hits;
-    }
-    if (all.samples > 0) out_.contrast = all.hits / all.samples - all.chance_hits / all.chances;
-    out_.support = inside > 0 ? supported / inside : 0;
-    out_.inside = total > 0 ? inside / total : 0;
-    out_.visible_px = inside;
-    CountSupported(support);
-  }
-
-  // True when both images show an edge here (the left one alone where the right image does not reach).
-  bool Test(const EdgeSample& s, EdgeSupport& support) {
-    constexpr int kRange = 12;
-    // Windows beside the edge that tell what chance is; the smoothing keeps those within 5 px dependent.
-    constexpr std::array<float, 4> kChances = {-10, -6, 6, 10};
-    const Vector2 normal(-s.tangent.y(), s.tangent.x());
-    if (!left_.Read(in_.left_smooth, in_.camera.width, in_.camera.height, s.left, normal, kRange)) return false;
-    const Vector2 right_at(s.left.x() - s.disparity, s.left.y());
-    const Vector2 right_normal(-s.tangent_right.y(), s.tangent_right.x());
-    const bool right = right_.Read(in_.right_smooth, in_.camera.width, in_.camera.height, right_at, right_normal, kRange);
-    CollectPeaks(left_, in_.left_edges.threshold, left_peaks_);
-    right_peaks_.clear();
-    if (right) CollectPeaks(right_, in_.right_edges.threshold, right_peaks_);
-    for (const float chance : kChances) support.chance_hits += Hits(chance, right) ? 1.0F : 0.0F;
-    support.chances += static_cast<float>(kChances.size());
-    support.samples += 1;
-    const bool hit = Hits(0, right);
-    if (hit) support.hits += 1;
-    return hit;
-  }
-
-  using Peaks = FixedVector<EdgePeak, 2 * EdgeProfile::kMaxRange>;
-
-  static void CollectPeaks(const EdgeProfile& profile, float threshold, Peaks& peaks) {
-    peaks.clear();
-    profile.ForEachPeak(threshold, [&](const EdgePeak& peak) { peaks.push_back(peak); });
-  }
-
-  [[nodiscard]] bool Hits(float at, bool right) const {
-    for (const EdgePeak& l : left_peaks_) {
-      if (std::abs(l.offset_px - at) > params_.max_offset_px) continue;
-      if (!right) return true;
-      for (const EdgePeak& r : right_peaks_) {
-        if (std::abs(r.offset_px - at) < params_.max_offset_px && (l.gradient > 0) == (r.gradient > 0) &&
-            std::abs(l.offset_px - r.offset_px) < params_.max_difference_px) {
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
-  [[nodiscard]] float LogRatio(const EdgeSupport& e) const {
-    if (e.samples < 1) return 0;
-    // An edge of one direction within 2 px is what the edge map counts; equal polarity and offset in both images are rarer.
-    const float chance = std::clamp(0.7F * in_.left_edges.background, 0.03F, 0.4F);
-    const float weight = params_.sample_weight * e.length_px / (e.samples * params_.samples.step_px);
-    return weight * (e.hits * Log(params_.support_rate / chance) +
-                     (e.samples - e.hits) * Log((1 - params_.support_rate) / (1 - chance)));
-  }
-
-  void CountSupported(const std::array<EdgeSupport, kMaxModelEdges>& support) {
-    std::array<std::uint32_t, kMaxModelFaces / 32> faces{};
-    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
-      if (support[e].length_px <= 0 || support[e].supported_px < 0.5F * support[e].length_px) continue;
-      ++out_.supported_edges;
-      for (const std::uint16_t face : model_.view.edges[e].face) {
-        if (face == kNoFace || !Faces(face)) continue;
-        std::uint32_t& word = faces[face / 32];
-        const std::uint32_t bit = 1U << (face % 32);
-        if ((word & bit) == 0) ++out_.supported_faces;
-        word |= bit;
-      }
-    }
-  }
-
   [[nodiscard]] bool Faces(std::size_t f) const {
     const ModelFace& face = model_.view.faces[f];
     return Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye_) > face.offset_m;
@@ -307,8 +210,6 @@ class EvidenceGatherer {
   Matrix3 R_;
   Vector3 t_, eye_;
   std::array<bool, kMaxModelEdges> seen_{};  // edges with samples
-  EdgeProfile left_, right_;
-  Peaks left_peaks_, right_peaks_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hal/dataset/png_image.h"
-#include "sim/kitchen_video.h"
+#include "sim/scenario_video.h"
 #include "sim/target_mesh.h"
 #include "tools/model_compiler/model_compiler.h"
 

@@ -38,10 +38,10 @@ void MakeInputs() {
   for (int i = 0; i < testing::kGoldenFrames; ++i) {
     const std::string stem = "frame" + std::to_string(i);
     if (std::filesystem::exists(kGoldenFolder / (stem + "_left.png"))) continue;
-    sim::VideoConfig config;
-    config.seed = 101 + static_cast<std::uint64_t>(i);
-    config.calibration = testing::GoldenCalibration();
-    const auto video = sim::KitchenVideo::Create(config, wanted);
+    sim::ScenarioSpec spec;
+    spec.seed = 101;
+    spec.camera.calibration = testing::GoldenCalibration();
+    const auto video = sim::ScenarioVideo::Create(spec, i, wanted);
     ASSERT_TRUE(video);
     const sim::StereoShot shot = video->Shoot(0);
     ASSERT_TRUE(dataset::WriteGrayPng(kGoldenFolder / (stem + "_left.png"), shot.left.view()));

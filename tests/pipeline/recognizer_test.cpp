@@ -74,11 +74,11 @@ TEST_F(RecognizerTest, FindsObjectsInRenderedKitchens) {
   constexpr std::uint64_t kLast = 203;
 #endif
   for (std::uint64_t seed = 201; seed <= kLast; ++seed) {
-    sim::VideoConfig config;
-    config.seed = seed;
-    config.samples_per_side = 2;
-    config.calibration = testing::GoldenCalibration();
-    const auto video = sim::KitchenVideo::Create(config, *targets);
+    sim::ScenarioSpec spec;
+    spec.seed = seed;
+    spec.samples = 9;
+    spec.camera.calibration = testing::GoldenCalibration();
+    const auto video = sim::ScenarioVideo::Create(spec, 0, *targets);
     ASSERT_TRUE(video);
     const sim::StereoShot shot = video->Shoot(0);
     ASSERT_EQ(Process({shot.left, shot.right}, result_), RecognizerError::kOk);
@@ -142,6 +142,56 @@ TEST_F(RecognizerTest, NoStateLeaksBetweenFrames) {
   AddModels();
   ASSERT_EQ(Process(a, result_), RecognizerError::kOk);
   EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), alone);
+}
+
+// A model that is left out is as if it had never been added; searching for it again restores the same bytes.
+TEST_F(RecognizerTest, OnlySearchedModelsAreReported) {
+  AddModels();
+  const StereoImages frame = testing::GoldenFrame(2);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  const std::string all = testing::DumpAll(TheRecognizer(), result_);
+  ASSERT_FALSE(result_.detections.empty());
+  const std::uint32_t found = result_.detections[0].model_id;
+  const std::uint32_t everything = TheRecognizer().searched();
+  std::uint32_t others = 0;
+  for (std::size_t m = 0; m < models_.size(); ++m) {
+    if (TheRecognizer().models()[m].id != found) others |= 1U << m;
+  }
+  TheRecognizer().SearchFor(others);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  for (const Detection& d : result_.detections) EXPECT_NE(d.model_id, found);
+  TheRecognizer().SearchFor(0);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  EXPECT_TRUE(result_.detections.empty());
+  TheRecognizer().SearchFor(everything);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), all);
+}
+
+TEST_F(RecognizerTest, RegionKeepsOnlyItsLines) {
+  AddModels();
+  const StereoImages frame = testing::GoldenFrame(2);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  const std::string whole = testing::DumpAll(TheRecognizer(), result_);
+  const std::size_t all_lines = TheRecognizer().lines().size();
+  std::size_t lines_in_halves = 0;
+  for (const ImageRegion& half : {ImageRegion{0, 0, 320, 480}, ImageRegion{320, 0, 320, 480}}) {
+    TheRecognizer().SetRegion(half);
+    ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+    lines_in_halves += TheRecognizer().lines().size();
+    for (const Line3& line : TheRecognizer().lines()) {
+      const float x = line.segment.Middle().x();  // rectified; the golden rig's raw pixels are within 30 px of it
+      EXPECT_TRUE(half.x == 0 ? x < 350 : x > 290) << x;
+    }
+  }
+  EXPECT_EQ(lines_in_halves, all_lines) << "every line lies in one half";
+  TheRecognizer().SetRegion({0, 0, 640, 480});
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  const std::string as_region = testing::DumpAll(TheRecognizer(), result_);
+  TheRecognizer().SetRegion({});
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), whole);
+  EXPECT_EQ(as_region, whole);
 }
 
 // The image planes are the caller's: a view with another stride gives the same bytes.

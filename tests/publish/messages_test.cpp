@@ -115,22 +115,21 @@ TEST(RosCovariance, PutsTranslationFirst) {
 class MessagesTest : public ::testing::Test {
  protected:
   std::mt19937 random_{4};
-  ModelView models_[2] = {test::MakeModel(3, "box"), test::MakeModel(7, "juice_dispenser")};
   std::unique_ptr<DetectionsMessage> detections_ = std::make_unique<DetectionsMessage>();
   std::unique_ptr<RecognitionMessage> recognition_ = std::make_unique<RecognitionMessage>();
 };
 
 TEST_F(MessagesTest, NothingFoundIsAnEmptyList) {
-  FillMessage(RandomReport(random_, 3), models_, "camera", *detections_);
-  FillMessage(RandomReport(random_, 0), models_, "camera", *detections_);
+  FillMessage(RandomReport(random_, 3), "camera", *detections_);
+  FillMessage(RandomReport(random_, 0), "camera", *detections_);
   EXPECT_EQ(detections_->value.detections._length, 0u);
-  FillMessage(RandomReport(random_, 0), models_, "camera", *recognition_);
+  FillMessage(RandomReport(random_, 0), "camera", *recognition_);
   EXPECT_EQ(recognition_->value.detections._length, 0u);
 }
 
 TEST_F(MessagesTest, RosMessageNamesAndPlacesEveryDetection) {
   const FrameReport report = RandomReport(random_, kMaxDetections);
-  FillMessage(report, models_, "left_optical", *detections_);
+  FillMessage(report, "left_optical", *detections_);
   const auto& out = detections_->value.detections;
   ASSERT_EQ(out._length, kMaxDetections);
   for (std::size_t i = 0; i < kMaxDetections; ++i) {
@@ -153,7 +152,7 @@ TEST_F(MessagesTest, RosMessageNamesAndPlacesEveryDetection) {
 
 TEST_F(MessagesTest, UnambiguousDetectionHasOneResultWithItsPoseAndScore) {
   const FrameReport report = RandomReport(random_, 1);
-  FillMessage(report, models_, "camera", *detections_);
+  FillMessage(report, "camera", *detections_);
   const Detection& in = report.result.detections[0];
   const auto& result = detections_->value.detections._buffer[0].results._buffer[0];
   EXPECT_EQ(result.hypothesis.score, double{in.score});
@@ -167,7 +166,7 @@ TEST_F(MessagesTest, UnambiguousDetectionHasOneResultWithItsPoseAndScore) {
 
 TEST_F(MessagesTest, ModesAreResultsTheHeaviestFirst) {
   const FrameReport report = RandomReport(random_, 5);  // detection 4 has weights .1 .2 .3 .4
-  FillMessage(report, models_, "camera", *detections_);
+  FillMessage(report, "camera", *detections_);
   const Detection& in = report.result.detections[4];
   const auto& results = detections_->value.detections._buffer[4].results;
   ASSERT_EQ(results._length, 4u);
@@ -182,34 +181,33 @@ TEST_F(MessagesTest, ModesOfEqualWeightKeepTheirOrder) {
   FrameReport report = RandomReport(random_, 4);
   auto& modes = report.result.detections[3].modes;  // three
   for (PoseMode& mode : modes) mode.weight = 1.0F / 3;
-  FillMessage(report, models_, "camera", *detections_);
+  FillMessage(report, "camera", *detections_);
   const auto& results = detections_->value.detections._buffer[3].results;
   for (std::uint32_t i = 0; i < 3; ++i) {
     EXPECT_EQ(results._buffer[i].pose.pose.position.x, modes[i].T_camera_model.t.x());
   }
 }
 
-TEST_F(MessagesTest, StampIsTheCaptureTimeAlsoBeforeZero) {
+TEST_F(MessagesTest, StampIsTheReportsAlsoBeforeZero) {
   FrameReport report;
   for (const auto& [ns, sec, nanosec] : {std::tuple{0LL, 0, 0u}, std::tuple{1'500'000'001LL, 1, 500'000'001u},
                                          std::tuple{-1LL, -1, 999'999'999u}, std::tuple{-1'000'000'000LL, -1, 0u}}) {
-    report.capture_time = CaptureTime(std::chrono::nanoseconds(ns));
-    FillMessage(report, models_, "camera", *detections_);
+    report.stamp = std::chrono::nanoseconds(ns);
+    FillMessage(report, "camera", *detections_);
     EXPECT_EQ(detections_->value.header.stamp.sec, sec);
     EXPECT_EQ(detections_->value.header.stamp.nanosec, nanosec);
   }
 }
 
 TEST_F(MessagesTest, NativeMessageCarriesEverything) {
-  FrameReport report = RandomReport(random_, 7);
-  report.results_dropped = 12;
-  FillMessage(report, models_, "left_optical", *recognition_);
+  const FrameReport report = RandomReport(random_, 7);
+  FillMessage(report, "left_optical", *recognition_);
   const wirepose_Recognition& out = recognition_->value;
   EXPECT_EQ(out.frame_sequence, report.sequence);
   EXPECT_EQ(out.capture_time_ns, report.capture_time.time_since_epoch().count());
+  EXPECT_EQ(out.stamp_ns, report.stamp.count());
   EXPECT_STREQ(out.frame_id, "left_optical");
   EXPECT_TRUE(out.budget_hit);
-  EXPECT_EQ(out.results_dropped, 12u);
   ASSERT_EQ(out.detections._length, 7u);
   for (std::size_t i = 0; i < 7; ++i) {
     const Detection& in = report.result.detections[i];
@@ -230,7 +228,7 @@ TEST_F(MessagesTest, NativeMessageCarriesEverything) {
 }
 
 TEST_F(MessagesTest, ListsAreReportedByName) {
-  FillMessage(RandomReport(random_, 0), models_, "camera", *recognition_);
+  FillMessage(RandomReport(random_, 0), "camera", *recognition_);
   const auto& lists = recognition_->value.lists;
   ASSERT_EQ(lists._length, 7u);
   EXPECT_STREQ(lists._buffer[2].name, "lines");
@@ -241,7 +239,9 @@ TEST_F(MessagesTest, ListsAreReportedByName) {
 
 TEST_F(MessagesTest, NamelessModelIsCalledByItsNumber) {
   const ModelView nameless[] = {test::MakeModel(7, "")};
-  FillMessage(RandomReport(random_, 1), nameless, "camera", *recognition_);
+  FrameReport report = RandomReport(random_, 1);
+  report.models = LabelsOf(nameless, 1);
+  FillMessage(report, "camera", *recognition_);
   EXPECT_STREQ(recognition_->value.detections._buffer[0].name, "7");
 }
 
@@ -259,7 +259,11 @@ TEST_F(MessagesTest, HealthCarriesEverything) {
   report.queue_high_water = 2;
   report.queue_capacity = 5;
   const auto message = std::make_unique<HealthMessage>();
-  FillMessage(report, models_, "1.2.3", *message);
+  const ModelView models[] = {test::MakeModel(3, "box"), test::MakeModel(7, "juice_dispenser")};
+  report.models = LabelsOf(models, 0b01);
+  report.pool = {100, 200, 300, 4, 5};
+  report.events = {1, 2, 3, 4, 5};
+  FillMessage(report, "1.2.3", *message);
   const wirepose_Health& out = message->value;
   EXPECT_EQ(out.state, wirepose_BAD_FRAMES);
   EXPECT_STREQ(out.version, "1.2.3");
@@ -284,6 +288,16 @@ TEST_F(MessagesTest, HealthCarriesEverything) {
   EXPECT_EQ(out.models._buffer[1].id, 7u);
   EXPECT_EQ(out.models._buffer[1].checksum, 0xC0FFEE07U);
   EXPECT_STREQ(out.models._buffer[1].name, "juice_dispenser");
+  EXPECT_TRUE(out.models._buffer[0].searched);
+  EXPECT_FALSE(out.models._buffer[1].searched);
+  EXPECT_EQ(out.pool.used_bytes, 100u);
+  EXPECT_EQ(out.pool.high_water_bytes, 200u);
+  EXPECT_EQ(out.pool.capacity_bytes, 300u);
+  EXPECT_EQ(out.events.subscribers, 1u);
+  EXPECT_EQ(out.events.deadlines_missed, 2u);
+  EXPECT_EQ(out.events.incompatible_qos, 3u);
+  EXPECT_EQ(out.events.commands_accepted, 4u);
+  EXPECT_EQ(out.events.commands_refused, 5u);
 }
 
 TEST(FixedText, CutsAtWholeCharacters) {

@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <random>
 #include <thread>
-
-#include "reports_for_test.h"
 
 namespace wirepose {
 namespace {
@@ -16,90 +15,125 @@ FrameReport Numbered(std::uint64_t sequence) {
   return report;
 }
 
-TEST(Outbox, GivesReportsInOrder) {
-  const auto outbox = std::make_unique<Outbox>();
-  EXPECT_EQ(outbox->TakeFrame(), nullptr);
-  EXPECT_TRUE(outbox->Offer(Numbered(1)));
-  EXPECT_TRUE(outbox->Offer(Numbered(2)));
-  for (std::uint64_t expected = 1; expected <= 2; ++expected) {
-    const FrameReport* const report = outbox->TakeFrame();
-    ASSERT_NE(report, nullptr);
-    EXPECT_EQ(report->sequence, expected);
-    outbox->Release(report);
+class OutboxTest : public ::testing::Test {
+ protected:
+  // Sequence number of the next report, and what the outbox says was dropped before it.
+  std::uint64_t TakeNext() {
+    const FrameReport* const report = outbox_->TakeFrame(dropped_);
+    if (report == nullptr) return 0;
+    const std::uint64_t sequence = report->sequence;
+    outbox_->Release(report);
+    return sequence;
   }
-  EXPECT_EQ(outbox->TakeFrame(), nullptr);
+
+  std::unique_ptr<Outbox> outbox_ = std::make_unique<Outbox>();
+  std::uint64_t dropped_ = 0;
+};
+
+TEST_F(OutboxTest, GivesReportsInOrder) {
+  EXPECT_EQ(TakeNext(), 0u);
+  outbox_->Offer(Numbered(1));
+  outbox_->Offer(Numbered(2));
+  EXPECT_EQ(TakeNext(), 1u);
+  EXPECT_EQ(TakeNext(), 2u);
+  EXPECT_EQ(TakeNext(), 0u);
+  EXPECT_EQ(dropped_, 0u);
 }
 
-// A publisher that never takes anything: the vision thread is told so at once, every time.
-TEST(Outbox, StalledConsumerCostsReportsNotTime) {
-  const auto outbox = std::make_unique<Outbox>();
-  for (std::uint64_t i = 0; i < 100; ++i) {
-    EXPECT_EQ(outbox->Offer(Numbered(i)), i < Outbox::kQueueCapacity);
+// A publisher that never takes anything: the vision thread goes on, and the newest wait.
+TEST_F(OutboxTest, StalledConsumerGetsTheNewestOnceItIsBack) {
+  for (std::uint64_t i = 1; i <= 100; ++i) outbox_->Offer(Numbered(i));
+  EXPECT_EQ(outbox_->dropped(), 100 - Outbox::kFrames);
+  for (std::uint64_t i = 101 - Outbox::kFrames; i <= 100; ++i) {
+    EXPECT_EQ(TakeNext(), i);
+    EXPECT_EQ(dropped_, 100 - Outbox::kFrames) << "all losses came before these";
   }
-  EXPECT_EQ(outbox->dropped(), 100 - Outbox::kQueueCapacity);
-  // Once the consumer is back, the next report says how many were lost before it.
-  for (std::uint64_t i = 0; i < Outbox::kQueueCapacity; ++i) {
-    const FrameReport* const report = outbox->TakeFrame();
-    ASSERT_NE(report, nullptr);
-    EXPECT_EQ(report->results_dropped, 0u);
-    outbox->Release(report);
-  }
-  ASSERT_TRUE(outbox->Offer(Numbered(100)));
-  const FrameReport* const report = outbox->TakeFrame();
-  EXPECT_EQ(report->results_dropped, 96u);
-  outbox->Release(report);
+  outbox_->Offer(Numbered(101));
+  EXPECT_EQ(TakeNext(), 101u);
+  EXPECT_EQ(dropped_, 100 - Outbox::kFrames);
+  EXPECT_EQ(outbox_->high_water(), outbox_->capacity());
 }
 
-TEST(Outbox, ReportBeingWrittenDoesNotTakeRoomInTheQueue) {
-  const auto outbox = std::make_unique<Outbox>();
-  ASSERT_TRUE(outbox->Offer(Numbered(0)));
-  const FrameReport* const writing = outbox->TakeFrame();
-  for (std::uint64_t i = 1; i <= Outbox::kQueueCapacity; ++i) EXPECT_TRUE(outbox->Offer(Numbered(i)));
-  EXPECT_FALSE(outbox->Offer(Numbered(99)));
-  EXPECT_EQ(writing->sequence, 0u) << "overwritten while being written";
-  EXPECT_EQ(outbox->high_water(), outbox->capacity());
-  outbox->Release(writing);
+TEST_F(OutboxTest, ReportBeingWrittenStaysWhatItIs) {
+  outbox_->Offer(Numbered(1));
+  const FrameReport* const writing = outbox_->TakeFrame(dropped_);
+  for (std::uint64_t i = 2; i <= 50; ++i) {
+    outbox_->Offer(Numbered(i));
+    ASSERT_EQ(writing->sequence, 1u) << "overwritten while being written";
+  }
+  outbox_->Release(writing);
+  EXPECT_EQ(TakeNext(), 51 - Outbox::kFrames);
 }
 
-TEST(Outbox, HealthGoesItsOwnWay) {
-  const auto outbox = std::make_unique<Outbox>();
-  while (outbox->Offer(Numbered(0))) {
-  }
+TEST_F(OutboxTest, EveryKindGoesItsOwnWay) {
+  for (std::uint64_t i = 1; i <= 20; ++i) outbox_->Offer(Numbered(i));
   HealthReport health;
-  health.uptime_ns = 77;
-  EXPECT_TRUE(outbox->Offer(health)) << "frames that wait must not keep health back";
-  HealthReport taken;
-  ASSERT_TRUE(outbox->TakeHealth(taken));
-  EXPECT_EQ(taken.uptime_ns, 77u);
-  EXPECT_FALSE(outbox->TakeHealth(taken));
+  SceneReport scene;
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    health.uptime_ns = i;
+    outbox_->Offer(health);
+    scene.dropped = static_cast<std::uint32_t>(i);
+    outbox_->Offer(scene);
+  }
+  CommandAnswer answer;
+  for (std::uint64_t i = 1; i <= Outbox::kAnswers; ++i) {
+    answer.command.request_id = i;
+    EXPECT_TRUE(outbox_->Offer(answer));
+  }
+  EXPECT_FALSE(outbox_->Offer(answer)) << "an answer is never given up for another";
+
+  const HealthReport* const newest = outbox_->TakeHealth();
+  ASSERT_NE(newest, nullptr);
+  EXPECT_EQ(newest->uptime_ns, 3u);
+  outbox_->Release(newest);
+  EXPECT_EQ(outbox_->TakeHealth(), nullptr);
+  const SceneReport* const seen = outbox_->TakeScene();
+  ASSERT_NE(seen, nullptr);
+  EXPECT_EQ(seen->dropped, 3u);
+  outbox_->Release(seen);
+  for (std::uint64_t i = 1; i <= Outbox::kAnswers; ++i) {
+    ASSERT_TRUE(outbox_->TakeAnswer(answer));
+    EXPECT_EQ(answer.command.request_id, i);
+  }
+  EXPECT_FALSE(outbox_->TakeAnswer(answer));
 }
 
-TEST(Outbox, TwoThreadsLoseNothingUncounted) {
-  const auto outbox = std::make_unique<Outbox>();
+// The taker pauses at random; every report is either taken, in order and whole, or counted as given up.
+TEST_F(OutboxTest, TwoThreadsLoseNothingUncounted) {
   constexpr std::uint64_t kReports = 20000;
   std::atomic<bool> done{false};
-  std::uint64_t taken = 0;
-  std::uint64_t disorder = 0;
+  std::uint64_t taken = 0, disorder = 0, torn = 0, miscounted = 0;
   std::thread consumer([&] {
+    std::mt19937 random(5);
     std::uint64_t last = 0;
     for (;;) {
       const bool last_round = done;
-      while (const FrameReport* const report = outbox->TakeFrame()) {
-        disorder += report->sequence <= last;
+      while (const FrameReport* const report = outbox_->TakeFrame(dropped_)) {
+        disorder += report->sequence <= last ? 1 : 0;
         last = report->sequence;
-        outbox->Release(report);
+        if (random() % 64 == 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
+        torn += report->capture_time.time_since_epoch().count() != static_cast<std::int64_t>(last) ? 1 : 0;
+        miscounted += dropped_ != last - 1 - taken ? 1 : 0;
+        outbox_->Release(report);
         ++taken;
       }
       if (last_round) return;
-      outbox->Wait();
+      outbox_->Wait();
     }
   });
-  for (std::uint64_t i = 1; i <= kReports; ++i) (void)outbox->Offer(Numbered(i));
+  for (std::uint64_t i = 1; i <= kReports; ++i) {
+    FrameReport report = Numbered(i);
+    report.capture_time = CaptureTime(std::chrono::nanoseconds(i));
+    outbox_->Offer(report);
+  }
   done = true;
-  outbox->Wake();
+  outbox_->Wake();
   consumer.join();
-  EXPECT_EQ(taken + outbox->dropped(), kReports);
+  EXPECT_EQ(taken + outbox_->dropped(), kReports);
+  EXPECT_GT(outbox_->dropped(), 0u) << "the test shall see an overrun";
   EXPECT_EQ(disorder, 0u);
+  EXPECT_EQ(torn, 0u);
+  EXPECT_EQ(miscounted, 0u);
 }
 
 }  // namespace

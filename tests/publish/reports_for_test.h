@@ -38,12 +38,15 @@ inline ModelView MakeModel(std::uint32_t id, std::string_view name) {
   return model;
 }
 
-// `count` detections of model 7; detection i has i % 5 modes.
+// `count` detections of model 7; detection i has i % 5 modes. Labels of models 3 and 7.
 inline FrameReport RandomReport(std::mt19937& random, std::size_t count) {
   FrameReport report;
+  const ModelView models[] = {MakeModel(3, "box"), MakeModel(7, "juice_dispenser")};
+  report.models = LabelsOf(models, 0b11);
   report.sequence = random();
   report.capture_time = CaptureTime(std::chrono::nanoseconds(static_cast<std::int64_t>(random() >> 1) * 1'000'000'000 +
                                                              static_cast<int>(random() % 1'000'000'000)));
+  report.stamp = report.capture_time.time_since_epoch() + std::chrono::hours(2);
   for (std::size_t i = 0; i < count; ++i) {
     Detection detection;
     detection.model_id = 7;

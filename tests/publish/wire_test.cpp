@@ -1,6 +1,5 @@
 // What really goes over DDS: the bytes of the ROS 2 message, and each topic's way from the
 // publisher to a reader.
-#include <dds/ddsi/ddsi_serdata.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -10,6 +9,7 @@
 #include "../dds_domain.h"
 #include "cdr_reader.h"
 #include "publish/publisher.h"
+#include "raw_bytes.h"
 #include "reports_for_test.h"
 
 namespace wirepose {
@@ -21,10 +21,11 @@ using test::CdrReader;
 class WireTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    config_.bus = {domain_.id(), true};
+    config_.bus.domain = domain_.id();
+    config_.bus.loopback = true;
     config_.frame_id = "left_optical";
     config_.version = "9.8.7";
-    const auto opened = publisher_->Open(config_, models_);
+    const auto opened = publisher_->Open(config_);
     ASSERT_TRUE(opened) << opened.error();
     Result<Bus, std::string> bus = Bus::Open(config_.bus);
     ASSERT_TRUE(bus) << bus.error();
@@ -35,7 +36,7 @@ class WireTest : public ::testing::Test {
     publisher_->Close();
   }
 
-  dds_entity_t MatchedReader(const TopicSpec& topic) {
+  dds_entity_t MatchedReader(TopicId topic) {
     const Result<dds_entity_t, std::string> reader = bus_->CreateReader(topic);
     if (!reader) throw std::runtime_error(reader.error());
     WaitUntil([&] {
@@ -63,31 +64,25 @@ class WireTest : public ::testing::Test {
   }
 
   static std::vector<unsigned char> TakeBytes(dds_entity_t reader) {
-    ddsi_serdata* data = nullptr;
-    dds_sample_info_t info{};
-    WaitUntil([&] { return dds_takecdr(reader, &data, 1, &info, DDS_ANY_STATE) == 1; });
-    const std::uint32_t size = ddsi_serdata_size(data);
-    ddsrt_iovec_t io{};
-    ddsi_serdata* const reference = ddsi_serdata_to_ser_ref(data, 0, size, &io);
-    const auto* const first = static_cast<const unsigned char*>(io.iov_base);
-    std::vector<unsigned char> bytes(first, first + io.iov_len);
-    ddsi_serdata_to_ser_unref(reference, &io);
-    ddsi_serdata_unref(data);
+    std::vector<unsigned char> bytes;
+    WaitUntil([&] {
+      bytes = test::TakeRawBytes(reader);
+      return !bytes.empty();
+    });
     return bytes;
   }
 
   test::DdsDomain domain_;
   std::mt19937 random_{6};
-  ModelView models_[1] = {test::MakeModel(7, "juice_dispenser")};
   PublisherConfig config_;
   std::unique_ptr<Publisher> publisher_ = std::make_unique<Publisher>();
   std::unique_ptr<Bus> bus_;
 };
 
-void ExpectHeader(CdrReader& cdr, CaptureTime time) {
+void ExpectHeader(CdrReader& cdr, std::chrono::nanoseconds time) {
   const auto sec = cdr.Read<std::int32_t>();
   const auto nanosec = cdr.Read<std::uint32_t>();
-  EXPECT_EQ(std::int64_t{sec} * 1'000'000'000 + nanosec, time.time_since_epoch().count());
+  EXPECT_EQ(std::int64_t{sec} * 1'000'000'000 + nanosec, time.count());
   EXPECT_EQ(cdr.ReadString(), "left_optical");
 }
 
@@ -112,7 +107,7 @@ void ExpectResult(CdrReader& cdr, const Detection& in, const Pose& T, float weig
 }
 
 void ExpectDetection(CdrReader& cdr, const FrameReport& report, const Detection& in) {
-  ExpectHeader(cdr, report.capture_time);
+  ExpectHeader(cdr, report.stamp);
   const auto results = cdr.Read<std::uint32_t>();
   ASSERT_EQ(results, std::max<std::size_t>(1, in.modes.size()));
   for (std::uint32_t r = 0; r < results; ++r) {
@@ -132,13 +127,13 @@ void ExpectDetection(CdrReader& cdr, const FrameReport& report, const Detection&
 }
 
 TEST_F(WireTest, RosMessageFieldByField) {
-  const dds_entity_t reader = MatchedReader(kDetectionsTopic);
+  const dds_entity_t reader = MatchedReader(TopicId::kDetections);
   for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{2}, kMaxDetections}) {
     const FrameReport report = test::RandomReport(random_, count);
-    ASSERT_TRUE(publisher_->Publish(report));
+    publisher_->Publish(report);
     const std::vector<unsigned char> bytes = TakeBytes(reader);
     CdrReader cdr(bytes);
-    ExpectHeader(cdr, report.capture_time);
+    ExpectHeader(cdr, report.stamp);
     ASSERT_EQ(cdr.Read<std::uint32_t>(), count);
     for (const Detection& in : report.result.detections) ExpectDetection(cdr, report, in);
     EXPECT_TRUE(cdr.AtEnd());
@@ -146,17 +141,28 @@ TEST_F(WireTest, RosMessageFieldByField) {
 }
 
 TEST_F(WireTest, TypeAndTopicAreThoseOfRos2) {
-  EXPECT_STREQ(kDetectionsTopic.name, "rt/wirepose/detections");
-  EXPECT_STREQ(kDetectionsTopic.type->m_typename, "vision_msgs::msg::dds_::Detection3DArray_");
-  EXPECT_EQ(kDetectionsTopic.type->m_nkeys, 0u);
+  const struct {
+    TopicId topic;
+    const char* name;
+    const char* type;
+  } expected[] = {
+      {TopicId::kDetections, "rt/wirepose/detections", "vision_msgs::msg::dds_::Detection3DArray_"},
+      {TopicId::kMarkers, "rt/wirepose/markers", "visualization_msgs::msg::dds_::MarkerArray_"},
+      {TopicId::kDiagnostics, "rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_"},
+  };
+  for (const auto& [topic, name, type] : expected) {
+    EXPECT_STREQ(Spec(topic).name, name);
+    EXPECT_STREQ(Spec(topic).type->m_typename, type);
+    EXPECT_EQ(Spec(topic).type->m_nkeys, 0u);
+  }
 }
 
 TEST_F(WireTest, RecognitionArrivesWhole) {
-  const dds_entity_t reader = MatchedReader(kRecognitionTopic);
+  const dds_entity_t reader = MatchedReader(TopicId::kRecognition);
   const FrameReport report = test::RandomReport(random_, kMaxDetections);
-  ASSERT_TRUE(publisher_->Publish(report));
+  publisher_->Publish(report);
   const auto sent = std::make_unique<RecognitionMessage>();
-  FillMessage(report, models_, config_.frame_id, *sent);
+  FillMessage(report, config_.frame_id, *sent);
   const auto received = std::make_unique<RecognitionMessage>();
   Take(reader, &received->value);
   EXPECT_EQ(received->value.frame_sequence, report.sequence);
@@ -176,10 +182,13 @@ TEST_F(WireTest, WhoComesLateGetsTheLastHealth) {
   for (std::uint64_t i = 1; i <= 3; ++i) {
     report.uptime_ns = i;
     report.last_error = "frame 3: image damaged";
-    WaitUntil([&] { return publisher_->Publish(report); });
+    const ModelView models[] = {test::MakeModel(7, "juice_dispenser")};
+    report.models = LabelsOf(models, 1);
+    publisher_->Publish(report);
+    dds_sleepfor(DDS_MSECS(20));  // only the newest waits for the publisher
   }
   dds_sleepfor(DDS_MSECS(100));
-  const dds_entity_t reader = MatchedReader(kHealthTopic);
+  const dds_entity_t reader = MatchedReader(TopicId::kHealth);
   const auto received = std::make_unique<HealthMessage>();
   Take(reader, &received->value);
   EXPECT_EQ(received->value.uptime_ns, 3u);
@@ -190,11 +199,11 @@ TEST_F(WireTest, WhoComesLateGetsTheLastHealth) {
 }
 
 TEST_F(WireTest, ReportsArriveInOrder) {
-  const dds_entity_t reader = MatchedReader(kRecognitionTopic);
+  const dds_entity_t reader = MatchedReader(TopicId::kRecognition);
   for (std::uint64_t i = 1; i <= 3; ++i) {
     FrameReport report;
     report.sequence = i;
-    ASSERT_TRUE(publisher_->Publish(report));
+    publisher_->Publish(report);
   }
   const auto received = std::make_unique<RecognitionMessage>();
   for (std::uint64_t i = 1; i <= 3; ++i) {
@@ -205,7 +214,7 @@ TEST_F(WireTest, ReportsArriveInOrder) {
 }
 
 TEST(Bus, DomainOutOfRangeIsRefusedWithAReason) {
-  const Result<Bus, std::string> bus = Bus::Open({5000, true});
+  const Result<Bus, std::string> bus = Bus::Open({.domain = 5000, .loopback = true, .topics = DefaultTopics(), .security = {}});
   ASSERT_FALSE(bus);
   EXPECT_NE(bus.error().find("5000"), std::string::npos) << bus.error();
 }

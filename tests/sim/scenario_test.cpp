@@ -124,40 +124,46 @@ bool AreApart(const Standing& a, const Standing& b) {
   return false;
 }
 
-TEST(KitchenScenario, KeepsItsPromises) {
+ScenarioSpec SmallSpec() {
+  ScenarioSpec spec;
+  spec.camera.calibration = test::SmallCalibration();
+  return spec;
+}
+
+TEST(Scenario, KitchenKeepsItsPromises) {
   int most_targets = 0;
   for (std::uint64_t seed = 0; seed < 25; ++seed) {
-    const auto scenario = KitchenScenario(seed, test::BoxAndBook());
+    const ScenarioSpec spec = SmallSpec();
+    const auto scenario = MakeScenario(spec, seed, test::BoxAndBook());
     ASSERT_TRUE(scenario) << scenario.error();
     const std::vector<Standing> things = StandingThings(scenario->scene);
     int targets = 0;
     for (std::size_t i = 0; i < things.size(); ++i) {
       targets += things[i].instance->obj_id > 0 ? 1 : 0;
-      for (std::size_t j = 0; j < i; ++j) EXPECT_TRUE(AreApart(things[i], things[j])) << seed;
+      for (std::size_t j = 0; j < i; ++j) {
+        if (things[i].instance->obj_id > 0 || things[j].instance->obj_id > 0) {
+          EXPECT_TRUE(AreApart(things[i], things[j])) << seed;
+        }
+      }
     }
     EXPECT_GE(targets, 1) << seed;
     most_targets = std::max(most_targets, targets);
 
-    const Pose& T = scenario->rig.T_world_left;
-    const Vector3d view = T.R.col(2);
-    const double down = std::asin(-view.z());
-    EXPECT_GE(down, 14.9 * kDegree);
-    EXPECT_LE(down, 40.1 * kDegree);
-    const double distance = (scenario->look_at - T.t).norm();
+    const double distance = (scenario->look_at - scenario->rig.T_world_left.t).norm();
     EXPECT_GE(distance, 0.69);
-    EXPECT_LE(distance, 1.41);
-    EXPECT_LT((scenario->look_at - T.t).cross(view).norm(), 1e-9) << "looks at it";
-
+    EXPECT_LE(distance, 1.7);
     const Renderer renderer(scenario->scene);
     for (const ObjectTruth& object : FindTruth(renderer, LeftCamera(scenario->rig), 2).objects) {
-      EXPECT_GT(object.visib_fract, 0.6) << "seed " << seed << " object " << object.obj_id;
+      EXPECT_GT(object.visib_fract, 0.25) << "seed " << seed << " object " << object.obj_id;
     }
   }
-  EXPECT_EQ(most_targets, 2);
+  EXPECT_EQ(most_targets, 3);
 }
 
-TEST(KitchenScenario, CameraMovesSmoothlyAroundTheSamePlace) {
-  const auto scenario = KitchenScenario(3, test::BoxAndBook());
+TEST(Scenario, OrbitMovesSmoothlyAroundTheSamePlace) {
+  ScenarioSpec spec = SmallSpec();
+  spec.path.kind = PathKind::kOrbit;
+  const auto scenario = MakeScenario(spec, 3, test::BoxAndBook());
   ASSERT_TRUE(scenario);
   EXPECT_TRUE(scenario->RigAt(0).T_world_left.R.isApprox(scenario->rig.T_world_left.R, 1e-12));
   const double distance = (scenario->rig.T_world_left.t - scenario->look_at).norm();
@@ -166,15 +172,42 @@ TEST(KitchenScenario, CameraMovesSmoothlyAroundTheSamePlace) {
     const Pose b = scenario->RigAt((i + 1) / 30.0).T_world_left;
     EXPECT_NEAR((a.t - scenario->look_at).norm(), distance, 1e-9);
     EXPECT_LT((a.t - b.t).norm(), 0.01);
-    EXPECT_LT((scenario->look_at - a.t).cross(a.R.col(2)).norm(), 1e-9);
   }
 }
 
-TEST(KitchenScenario, SaysWhenNothingFits) {
+// The blur follows the velocities; they must be those of the path.
+TEST(Scenario, VelocitiesAreThePathsDerivatives) {
+  ScenarioSpec spec = SmallSpec();
+  spec.path.kind = PathKind::kDrive;
+  spec.path.speed_m_per_s = {0.4, 0.4};
+  spec.path.shake_deg = {0.5, 0.5};
+  const auto scenario = MakeScenario(spec, 3, test::BoxAndBook());
+  ASSERT_TRUE(scenario);
+  for (int i = 1; i < 20; ++i) {
+    const double t = 0.05 * i, step = 1e-4;
+    const StereoRig rig = scenario->RigAt(t);
+    const Pose later = scenario->RigAt(t + step).T_world_left, before = scenario->RigAt(t - step).T_world_left;
+    EXPECT_LT((rig.velocity - (later.t - before.t) / (2 * step)).norm(), 1e-3);
+    const Matrix3d turn = (later.R - before.R) / (2 * step) * rig.T_world_left.R.transpose();
+    EXPECT_LT((turn - Skew(rig.rotation_rate)).norm(), 0.02 * rig.rotation_rate.norm() + 1e-3);
+  }
+  EXPECT_NEAR(scenario->RigAt(0.2).velocity.norm(), 0.4, 0.02);
+}
+
+TEST(Scenario, SaysWhenNothingFits) {
   const std::vector<TargetMesh> huge = {{1, "tower", {}, MakeBox({1, 1, 3})}};
-  const auto scenario = KitchenScenario(1, huge);
+  const auto scenario = MakeScenario(SmallSpec(), 1, huge);
   ASSERT_FALSE(scenario);
   EXPECT_NE(scenario.error().find("millimetres"), std::string::npos);
+}
+
+TEST(Scenario, SaysWhichModelIsMissing) {
+  ScenarioSpec spec = SmallSpec();
+  spec.objects[0].models = {"teapot"};
+  const auto scenario = MakeScenario(spec, 1, test::BoxAndBook());
+  ASSERT_FALSE(scenario);
+  EXPECT_NE(scenario.error().find("teapot"), std::string::npos);
+  EXPECT_NE(scenario.error().find("parcel_box, book"), std::string::npos);
 }
 
 }  // namespace

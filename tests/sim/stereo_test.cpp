@@ -4,24 +4,24 @@
 #include <cmath>
 
 #include "opencv_projection.h"
-#include "sim/kitchen_video.h"
+#include "sim/scenario_video.h"
 #include "sim/lens.h"
 #include "test_scenes.h"
 
 namespace wirepose::sim {
 namespace {
 
-VideoConfig SmallVideo(std::uint64_t seed, int threads) {
-  VideoConfig config;
-  config.seed = seed;
-  config.threads = threads;
-  config.calibration = test::SmallCalibration();
-  return config;
+ScenarioSpec SmallSpec(std::uint64_t seed) {
+  ScenarioSpec spec;
+  spec.seed = seed;
+  spec.camera.calibration = test::SmallCalibration();
+  spec.path.shake_deg = {0.2, 0.2};
+  return spec;
 }
 
 TEST(Stereo, SameSeedSameBytesOnAnyNumberOfThreads) {
-  const auto one = KitchenVideo::Create(SmallVideo(5, 1), test::BoxAndBook());
-  const auto three = KitchenVideo::Create(SmallVideo(5, 3), test::BoxAndBook());
+  const auto one = ScenarioVideo::Create(SmallSpec(5), 0, test::BoxAndBook(), 1);
+  const auto three = ScenarioVideo::Create(SmallSpec(5), 0, test::BoxAndBook(), 3);
   ASSERT_TRUE(one && three);
   const StereoShot later = one->Shoot(3), first = one->Shoot(0);
   const StereoShot first_again = three->Shoot(0), later_again = three->Shoot(3);  // other order
@@ -33,21 +33,25 @@ TEST(Stereo, SameSeedSameBytesOnAnyNumberOfThreads) {
 }
 
 TEST(Stereo, OtherSeedOtherBytes) {
-  const auto a = KitchenVideo::Create(SmallVideo(5, 2), test::BoxAndBook());
-  const auto b = KitchenVideo::Create(SmallVideo(6, 2), test::BoxAndBook());
-  ASSERT_TRUE(a && b);
+  const auto a = ScenarioVideo::Create(SmallSpec(5), 0, test::BoxAndBook());
+  const auto b = ScenarioVideo::Create(SmallSpec(6), 0, test::BoxAndBook());
+  const auto second_scene = ScenarioVideo::Create(SmallSpec(5), 1, test::BoxAndBook());
+  ASSERT_TRUE(a && b && second_scene);
   EXPECT_NE(a->Shoot(0).left.pixels, b->Shoot(0).left.pixels);
+  EXPECT_EQ(second_scene->Shoot(0).left.pixels, b->Shoot(0).left.pixels) << "scenes count the seed up";
 }
 
 TEST(Stereo, RefusesOptionsOutOfRange) {
-  VideoConfig config = SmallVideo(1, 2);
-  config.samples_per_side = 7;
-  EXPECT_FALSE(KitchenVideo::Create(config, test::BoxAndBook()));
-  config = SmallVideo(1, 2);
-  config.frame_rate_hz = 0;
-  EXPECT_FALSE(KitchenVideo::Create(config, test::BoxAndBook()));
-  EXPECT_FALSE(KitchenVideo::Create(SmallVideo(1, 0), test::BoxAndBook()));
-  EXPECT_FALSE(KitchenVideo::Create(SmallVideo(1, 1), {}));
+  ScenarioSpec spec = SmallSpec(1);
+  spec.samples = 7;
+  EXPECT_FALSE(ScenarioVideo::Create(spec, 0, test::BoxAndBook()));
+  spec.samples = -4;
+  EXPECT_FALSE(ScenarioVideo::Create(spec, 0, test::BoxAndBook()));
+  spec = SmallSpec(1);
+  spec.rate_hz = 0;
+  EXPECT_FALSE(ScenarioVideo::Create(spec, 0, test::BoxAndBook()));
+  EXPECT_FALSE(ScenarioVideo::Create(SmallSpec(1), 0, test::BoxAndBook(), 0));
+  EXPECT_FALSE(ScenarioVideo::Create(SmallSpec(1), 0, {}));
 }
 
 // A slanted plane with a strong texture: every left pixel's light must be found in the right image

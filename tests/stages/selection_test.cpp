@@ -113,8 +113,18 @@ TEST(Score, IsAProbabilityThatGrowsWithEvidence) {
   EXPECT_GT(with(&Evidence::edges, 120), score);
   EXPECT_GT(with(&Evidence::faces, 6), score);
   EXPECT_GT(with(&Evidence::contrast, 0.6F), score);
+  EXPECT_GT(with(&Evidence::distinct, 0.6F), score);
   EXPECT_LT(with(&Evidence::overrun, 0.5F), score);
   EXPECT_LT(with(&Evidence::inside, 0.5F), score);
+  const auto with_surface = [&](float SurfaceEvidence::*term) {
+    Evidence e = weak;
+    e.surface.*term = 0.8F;
+    return ScoreOf(params, e);
+  };
+  EXPECT_GT(with_surface(&SurfaceEvidence::on), score);
+  EXPECT_GT(with_surface(&SurfaceEvidence::drop), score);
+  EXPECT_LT(with_surface(&SurfaceEvidence::through), score);
+  EXPECT_EQ(with_surface(&SurfaceEvidence::before), score);
   Random random(1);
   for (int k = 0; k < 1000; ++k) {
     Evidence e;

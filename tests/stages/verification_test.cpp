@@ -17,9 +17,12 @@ class VerificationTest : public ::testing::Test {
  protected:
   Evidence Gather(const RenderedScene& scene, const Pose& T) {
     Evidence evidence;
+    ComputeDisparityMap({}, scene.camera.width, scene.camera.height, scene.left->normalized,
+                        scene.right->normalized, *disparity_scratch_, *disparity_);
     GatherEvidence({},
                    {scene.camera, scene.left->map, scene.right->map, scene.left->normalized,
-                    scene.right->normalized, scene.left->smooth, scene.right->smooth},
+                    scene.right->normalized, scene.left->smooth, scene.right->smooth,
+                    *disparity_},
                    *model_, T, *scratch_, evidence);
     return evidence;
   }
@@ -28,6 +31,8 @@ class VerificationTest : public ::testing::Test {
   }
 
   TestModel model_ = testing::Load("parcel_box");
+  std::unique_ptr<DisparityScratch> disparity_scratch_ = std::make_unique<DisparityScratch>();
+  std::unique_ptr<DisparityMap> disparity_ = std::make_unique<DisparityMap>();
   std::unique_ptr<VerifyScratch> scratch_ = std::make_unique<VerifyScratch>();
 };
 
@@ -103,6 +108,36 @@ TEST_F(VerificationTest, ContrastWithTheSurroundings) {
   EXPECT_LT(sum / count, 0.2);
 }
 
+// Edges of the object itself stand out from what is beside them; those of a wrong pose do not.
+TEST_F(VerificationTest, DistinctEdges) {
+  Random random(9);
+  const Pose T = testing::GoodView(random, *model_);
+  const RenderedScene scene = Show(T, sim::Texture::kPlain, 10);
+  const float right = Gather(scene, T).distinct;
+  EXPECT_GT(right, 0.5F);
+  int beaten = 0;
+  const int count = Cases(50);
+  for (int k = 0; k < count; ++k) {
+    const Evidence wrong = Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1), random.Uniform(0.03, 0.1)));
+    EXPECT_TRUE(wrong.distinct >= 0 && wrong.distinct <= 1);
+    if (wrong.distinct < right) ++beaten;
+  }
+  EXPECT_GE(beaten, count - 1);
+}
+
+TEST_F(VerificationTest, SurfacesOfTheSceneAgree) {
+  Random random(10);
+  const Pose T = testing::GoodView(random, *model_);
+  const RenderedScene scene = Show(T, sim::Texture::kLabel, 11);
+  const SurfaceEvidence right = Gather(scene, T).surface;
+  EXPECT_GT(right.on, 0.7F);
+  EXPECT_GT(right.drop, 0.3F);
+  EXPECT_LT(right.through, 0.1F);
+  Pose nearer = T;
+  nearer.t *= 0.85;
+  EXPECT_GT(Gather(scene, nearer).surface.through, 0.5F);
+}
+
 TEST_F(VerificationTest, NothingInTheImagesSpeaksAgainst) {
   Random random(5);
   RenderedScene scene;
@@ -151,6 +186,8 @@ TEST_F(VerificationTest, AnyPoseGivesFiniteEvidence) {
     EXPECT_TRUE(e.support >= 0 && e.support <= 1.001F && e.inside >= 0 && e.inside <= 1.001F);
     EXPECT_TRUE(e.overrun >= 0 && e.overrun <= 1);
     EXPECT_LE(e.supported_faces, 6);
+    EXPECT_TRUE(e.distinct >= 0 && e.distinct <= 1);
+    EXPECT_TRUE(e.surface.on >= 0 && e.surface.on + e.surface.through + e.surface.before <= 1.001F);
   }
 }
 

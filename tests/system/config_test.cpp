@@ -41,9 +41,9 @@ class ConfigTest : public ::testing::Test {
 TEST_F(ConfigTest, EmptyFileGivesDefaults) {
   const Config config = Load("");
   EXPECT_EQ(config.camera.backend, CameraBackend::kUnset);
-  EXPECT_EQ(config.bus.domain, 0u);
-  EXPECT_FALSE(config.bus.loopback);
-  EXPECT_EQ(config.frame_id, "wirepose_left_optical");
+  EXPECT_EQ(config.dds.bus.domain, 0u);
+  EXPECT_FALSE(config.dds.bus.loopback);
+  EXPECT_EQ(config.dds.frame_id, "wirepose_left_optical");
   EXPECT_TRUE(config.models.empty());
 }
 
@@ -73,9 +73,9 @@ search_for: [3, 1]
   EXPECT_EQ(config.camera.simulated.frame_rate_hz, 15);
   EXPECT_EQ(config.camera.simulated.samples_per_pixel, 25);
   EXPECT_EQ(config.camera.simulated.truth_path, folder / "truth.jsonl");
-  EXPECT_EQ(config.bus.domain, 42u);
-  EXPECT_TRUE(config.bus.loopback);
-  EXPECT_EQ(config.frame_id, "eye");
+  EXPECT_EQ(config.dds.bus.domain, 42u);
+  EXPECT_TRUE(config.dds.bus.loopback);
+  EXPECT_EQ(config.dds.frame_id, "eye");
   EXPECT_EQ(config.models, (std::vector<std::filesystem::path>{folder / "a.wpm", "/b"}));
   EXPECT_EQ(config.search_for, (std::vector<std::uint32_t>{3, 1}));
 }
@@ -87,7 +87,8 @@ TEST_F(ConfigTest, TheExampleIsValid) {
 TEST_F(ConfigTest, RefusalsNameLineKeyAndRemedy) {
   EXPECT_EQ(Refusal("a: 1\n"), ":1: a: unknown key; known here: camera, dds, models, search_for");
   EXPECT_EQ(Refusal("dds:\n  domain: 5\n  domian: 6\n"),
-            ":3: dds.domian: unknown key; known here: domain, frame_id, loopback");
+            ":3: dds.domian: unknown key; known here: domain, frame_id, loopback, pool_kib, security, stamp, "
+            "topics");
   EXPECT_EQ(Refusal("dds:\n  domain: 231\n"), ":2: dds.domain: '231' is not a whole number from 0 to 230");
   EXPECT_EQ(Refusal("dds:\n  domain: -1\n"), ":2: dds.domain: '-1' is not a whole number from 0 to 230");
   EXPECT_EQ(Refusal("dds:\n  domain: 1x\n"), ":2: dds.domain: '1x' is not a whole number from 0 to 230");
@@ -104,6 +105,45 @@ TEST_F(ConfigTest, RefusalsNameLineKeyAndRemedy) {
             ":1: camera.timeout_ms: '70000' is not a whole number from 10 to 60000");
   EXPECT_NE(Refusal("camera: { backend: kodak }\n").find("no camera 'kodak'"), std::string::npos);
   EXPECT_NE(Refusal("dds: { frame_id: " + std::string(64, 'x') + " }").find("longer than 63"), std::string::npos);
+}
+
+TEST_F(ConfigTest, TopicsPoolAndStamp) {
+  const Config config = Load(R"(
+dds:
+  stamp: capture
+  pool_kib: 4096
+  topics:
+    detections: { name: rt/robot1/objects, reliable: false, depth: 2, deadline_ms: 100 }
+)");
+  EXPECT_EQ(config.dds.stamp, StampSource::kCapture);
+  EXPECT_EQ(config.dds.pool_bytes, 4096U << 10);
+  const TopicSettings& detections = config.dds.bus.topics[static_cast<std::size_t>(TopicId::kDetections)];
+  EXPECT_EQ(detections.name, "rt/robot1/objects");
+  EXPECT_FALSE(detections.reliable);
+  EXPECT_EQ(detections.depth, 2);
+  EXPECT_EQ(detections.deadline.count(), 100);
+  EXPECT_EQ(config.dds.bus.topics[static_cast<std::size_t>(TopicId::kHealth)].name, "wirepose/health");
+  EXPECT_FALSE(config.dds.bus.security);
+
+  EXPECT_EQ(Refusal("dds: { stamp: now }\n"), ":1: dds.stamp: neither system nor capture");
+  EXPECT_EQ(Refusal("dds: { topics: { health: { depth: 2 } } }\n"),
+            ":1: dds.topics.health.depth: '2' is not a whole number from 1 to 1");
+  EXPECT_NE(Refusal("dds: { topics: { health: { name: /a b } } }\n").find("not a topic name"), std::string::npos);
+  EXPECT_NE(Refusal("dds: { topics: { health: { name: wirepose/recognition } } }\n").find("two topics"),
+            std::string::npos);
+  EXPECT_NE(Refusal("dds: { topics: { weather: {} } }\n").find("dds.topics.weather: unknown key"), std::string::npos);
+}
+
+TEST_F(ConfigTest, SecurityNeedsAllItsFiles) {
+  const std::string file = file_.string();
+  EXPECT_NE(Refusal("dds:\n  security: { governance: nowhere.p7s }\n").find(":2: dds.security.governance: no such file"),
+            std::string::npos);
+  EXPECT_NE(Refusal("dds:\n  security: { governance: " + file + " }\n").find("needs all six files"), std::string::npos);
+  const Config config = Load("dds:\n  security: { identity_ca: " + file + ", certificate: " + file + ", private_key: " +
+                             file + ", permissions_ca: " + file + ", governance: " + file + ", permissions: " + file + " }\n");
+  ASSERT_TRUE(config.dds.bus.security);
+  EXPECT_EQ(config.dds.bus.security->permissions, file);
+  EXPECT_EQ(config.dds.pool_bytes, kDefaultSecuredDdsPoolBytes);
 }
 
 TEST_F(ConfigTest, WhatIsNotYamlIsRefusedWithItsLine) {

@@ -71,20 +71,23 @@ class RobotLoopTest : public ::testing::Test {
     camera_ = std::make_unique<ScriptedCamera>(std::move(script));
     ASSERT_EQ(camera_->Open(), CameraError::kOk);
     ASSERT_EQ(recognizer_->Configure(camera_->calibration()), RecognizerError::kOk);
-    const BusConfig bus{domain_.id(), true};
-    const auto opened = publisher_->Open({bus, "eye", "1"}, {});
+    BusConfig bus;
+    bus.domain = domain_.id();
+    bus.loopback = true;
+    const auto opened = publisher_->Open({bus, "eye", "1"});
     ASSERT_TRUE(opened) << opened.error();
     ASSERT_EQ(camera_->Start(), CameraError::kOk);
     const Result<Bus, std::string> reader_bus = Bus::Open(bus);
     ASSERT_TRUE(reader_bus) << reader_bus.error();
-    const Result<dds_entity_t, std::string> reader = reader_bus->CreateReader(kHealthTopic);
+    const Result<dds_entity_t, std::string> reader = reader_bus->CreateReader(TopicId::kHealth);
     ASSERT_TRUE(reader) << reader.error();
     WaitForMatch(*reader);
 
     std::atomic<bool> done{false};
     std::thread listener([&] { Listen(*reader, done); });
     Service service;
-    const auto loop = std::make_unique<RobotLoop>(*camera_, *recognizer_, *publisher_, service,
+    CommandHandler commands(*recognizer_, *models_, kWidth, kHeight);
+    const auto loop = std::make_unique<RobotLoop>(RobotParts{*camera_, *recognizer_, *publisher_, commands, service},
                                                   RobotLoopConfig{timeout_, max_frames});
     try {
       loop->Run(stop_);
@@ -124,6 +127,7 @@ class RobotLoopTest : public ::testing::Test {
   test::DdsDomain domain_;
   std::unique_ptr<ScriptedCamera> camera_;
   std::unique_ptr<Recognizer> recognizer_ = std::make_unique<Recognizer>();
+  std::unique_ptr<ModelLibrary> models_ = std::make_unique<ModelLibrary>(*recognizer_);
   std::unique_ptr<Publisher> publisher_ = std::make_unique<Publisher>();
   std::atomic<bool> stop_{false};
   std::chrono::milliseconds timeout_{50};

@@ -13,6 +13,7 @@
 #include "tools/evaluation/candidate_log.h"
 #include "tools/evaluation/evaluate.h"
 #include "tools/evaluation/evaluation_json.h"
+#include "tools/evaluation/report/report.h"
 #include "tools/evaluation/results_csv.h"
 #include "tools/evaluation/summary.h"
 #include "tools/evaluation/trace_log.h"
@@ -29,6 +30,7 @@ struct EvalArguments {
   fs::path overlay;     // folder; empty: none
   fs::path candidates;  // empty: none
   fs::path trace;       // empty: none
+  fs::path report;      // empty: none
 };
 
 // A long run must not fail at its last step.
@@ -81,20 +83,29 @@ void RunEval(const EvalArguments& arguments) {
     CheckWritable(arguments.trace);
     trace = std::make_unique<evaluation::TraceLog>(arguments.trace);
   }
+  evaluation::EvaluationOptions options = arguments.options;
+  options.trace = !arguments.trace.empty() || !arguments.report.empty();
+  std::unique_ptr<evaluation::Report> report;
+  if (!arguments.report.empty()) {
+    CheckWritable(arguments.report);
+    report = std::make_unique<evaluation::Report>(options);
+  }
   const auto observer = [&](const evaluation::FrameView& view) -> Result<void, std::string> {
     ShowProgress(view);
     if (!arguments.overlay.empty()) DrawFrame(view, arguments);
     if (log) log->Add(view);
     if (trace) trace->Add(view);
-    return {};
+    return report ? report->Add(view) : Result<void, std::string>();
   };
-  evaluation::EvaluationOptions options = arguments.options;
-  options.trace = !arguments.trace.empty();
   const auto evaluation = evaluation::Evaluate(options, observer);
   if (!evaluation) throw WorkFailed(evaluation.error());
   const auto written = evaluation::WriteResults(arguments.out, evaluation->estimates);
   if (!written) throw WorkFailed(written.error());
   if (!arguments.json.empty()) WriteJson(arguments.json, *evaluation);
+  if (report) {
+    const auto made = report->Write(*evaluation, arguments.report);
+    if (!made) throw WorkFailed(made.error());
+  }
   std::fputs(evaluation::Summarize(*evaluation).c_str(), stdout);
 }
 
@@ -115,6 +126,8 @@ void AddEvalCommand(CLI::App& app) {
                    "All verified candidates with their evidence (CSV), to fit the score to");
   eval->add_option("--trace", arguments->trace,
                    "The fate of every true instance, stage by stage, and why it was missed (CSV)");
+  eval->add_option("--report", arguments->report,
+                   "One page with everything: figures, frames, each miss and false alarm with its cause (HTML)");
   eval->add_option("--limit", arguments->options.frame_limit, "Stop after so many frames (0: all)")
       ->check([](const std::string& text) {
         return text.starts_with('-') ? std::string("must not be negative") : std::string();

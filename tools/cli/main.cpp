@@ -6,6 +6,8 @@
 #include "compare_command.h"
 #include "eval_command.h"
 #include "model_command.h"
+#include "record_command.h"
+#include "send_command.h"
 #include "sim_command.h"
 #include "watch_command.h"
 
@@ -15,6 +17,8 @@ int main(int argc, char** argv) {
   wirepose::cli::AddCompareCommand(app);
   wirepose::cli::AddEvalCommand(app);
   wirepose::cli::AddModelCommand(app);
+  wirepose::cli::AddRecordCommand(app);
+  wirepose::cli::AddSendCommand(app);
   wirepose::cli::AddSimCommand(app);
   wirepose::cli::AddWatchCommand(app);
   try {

@@ -72,6 +72,7 @@ Json ToJson(const wirepose_Recognition& message) {
   return {{"topic", "recognition"},
           {"frame_sequence", message.frame_sequence},
           {"capture_time_ns", message.capture_time_ns},
+          {"stamp_ns", message.stamp_ns},
           {"frame_id", message.frame_id},
           {"detections", Each(message.detections, DetectionJson)},
           {"lists", Each(message.lists, ListUseJson)},
@@ -106,8 +107,50 @@ Json ToJson(const wirepose_Health& message) {
           {"queue_capacity", message.queue_capacity},
           {"results_dropped", message.results_dropped},
           {"write_errors", message.write_errors},
+          {"pool",
+           {{"used_bytes", message.pool.used_bytes},
+            {"high_water_bytes", message.pool.high_water_bytes},
+            {"capacity_bytes", message.pool.capacity_bytes}}},
+          {"events",
+           {{"subscribers", message.events.subscribers},
+            {"deadlines_missed", message.events.deadlines_missed},
+            {"incompatible_qos", message.events.incompatible_qos},
+            {"commands_accepted", message.events.commands_accepted},
+            {"commands_refused", message.events.commands_refused}}},
           {"models", Each(message.models, [](const wirepose_ModelStatus& model) {
-             return Json{{"id", model.id}, {"name", model.name}, {"checksum", model.checksum}};
+             return Json{{"id", model.id}, {"name", model.name}, {"checksum", model.checksum}, {"searched", model.searched}};
+           })}};
+}
+
+Json ToJson(const wirepose_CommandStatus& message) {
+  const wirepose_Region& region = message.region;
+  return {{"topic", "command_status"},
+          {"sender", message.sender},
+          {"request_id", message.request_id},
+          {"action", ActionName(message.action)},
+          {"accepted", message.accepted},
+          {"reason", message.reason},
+          {"paused", message.paused},
+          {"searched_ids", Each(message.searched_ids, [](std::uint32_t id) { return id; })},
+          {"region",
+           {{"x_px", region.x_px},
+            {"y_px", region.y_px},
+            {"width_px", region.width_px},
+            {"height_px", region.height_px}}}};
+}
+
+Json ToJson(const diagnostic_msgs_msg_dds__DiagnosticArray_& message) {
+  const auto value = [](const diagnostic_msgs_msg_dds__KeyValue_& entry) {
+    return Json{{"key", entry.key}, {"value", entry.value}};
+  };
+  return {{"topic", "diagnostics"},
+          {"header", RosHeaderJson(message.header)},
+          {"status", Each(message.status, [&](const diagnostic_msgs_msg_dds__DiagnosticStatus_& status) {
+             return Json{{"level", status.level},
+                         {"name", status.name},
+                         {"message", status.message},
+                         {"hardware_id", status.hardware_id},
+                         {"values", Each(status.values, value)}};
            })}};
 }
 

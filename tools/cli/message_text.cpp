@@ -7,6 +7,15 @@
 
 namespace wirepose::cli {
 
+double PositionSigma(const double (&covariance)[36]) {
+  return std::sqrt(covariance[0] + covariance[7] + covariance[14]);
+}
+
+double RotationSigma_deg(const double (&covariance)[36]) {
+  constexpr double kDegrees = 180 / 3.14159265358979323846;
+  return kDegrees * std::sqrt(covariance[21] + covariance[28] + covariance[35]);
+}
+
 namespace {
 
 template <typename Sequence>
@@ -16,12 +25,8 @@ auto Elements(const Sequence& sequence) {
 
 double Milliseconds(std::uint64_t ns) { return 1e-6 * static_cast<double>(ns); }
 
-// One standard deviation of position [mm] and rotation [deg] from a covariance in ROS's order.
 std::string Spread(const double (&covariance)[36]) {
-  constexpr double kDegrees = 180 / 3.14159265358979323846;
-  const double position = std::sqrt(covariance[0] + covariance[7] + covariance[14]);
-  const double rotation = std::sqrt(covariance[21] + covariance[28] + covariance[35]);
-  return fmt::format("+-{:.1f} mm +-{:.2f} deg", 1e3 * position, kDegrees * rotation);
+  return fmt::format("+-{:.1f} mm +-{:.2f} deg", 1e3 * PositionSigma(covariance), RotationSigma_deg(covariance));
 }
 
 std::string DetectionText(const wirepose_Detection& detection) {
@@ -51,6 +56,8 @@ const char* StateName(wirepose_HealthState state) {
       return "no_frames";
     case wirepose_CAMERA_LOST:
       return "camera_lost";
+    case wirepose_PAUSED:
+      return "paused";
     case wirepose_STOPPED:
       return "stopped";
   }
@@ -85,18 +92,63 @@ std::string ToText(const wirepose_Health& message) {
   std::string text = fmt::format(
       "health: {}, wireposed {}, up {:.1f} s, camera {}: {}\n"
       "  frames: {} good, {} missing, {} damaged, {} not synchronous, {} late, {} failed; "
-      "results dropped {}, write errors {}\n",
+      "results dropped {}, write errors {}\n"
+      "  bus: {} subscribers, {} deadlines missed, {} incompatible, commands {} accepted {} refused; pool {} of {} KiB, "
+      "most {}\n",
       StateName(message.state), message.version, 1e-9 * static_cast<double>(message.uptime_ns), message.camera,
       message.camera_status, f.good, f.missing, f.damaged, f.not_synchronous, f.late, f.failed, message.results_dropped,
-      message.write_errors);
+      message.write_errors, message.events.subscribers, message.events.deadlines_missed,
+      message.events.incompatible_qos, message.events.commands_accepted, message.events.commands_refused,
+      message.pool.used_bytes >> 10, message.pool.capacity_bytes >> 10, message.pool.high_water_bytes >> 10);
   for (const wirepose_StageTime& time : Elements(message.stage_times)) {
     text += fmt::format("  {:<16} p50 {:8.3f} ms  p99 {:8.3f} ms  max {:8.3f} ms\n", time.stage,
                         Milliseconds(time.p50_ns), Milliseconds(time.p99_ns), Milliseconds(time.max_ns));
   }
   for (const wirepose_ModelStatus& model : Elements(message.models)) {
-    text += fmt::format("  model {} {} ({:08x})\n", model.id, model.name, model.checksum);
+    text += fmt::format("  model {} {} ({:08x}){}\n", model.id, model.name, model.checksum,
+                        model.searched ? "" : ", not searched for");
   }
   if (message.last_error[0] != '\0') text += fmt::format("  last error: {}\n", message.last_error);
+  return text;
+}
+
+const char* ActionName(std::uint8_t action) {
+  switch (action) {
+    case wirepose_SELECT_MODELS:
+      return "select";
+    case wirepose_SET_REGION:
+      return "region";
+    case wirepose_PAUSE:
+      return "pause";
+    case wirepose_RESUME:
+      return "resume";
+    case wirepose_RELOAD_MODELS:
+      return "reload";
+    default:
+      return "unknown";
+  }
+}
+
+std::string ToText(const wirepose_CommandStatus& message) {
+  std::string text =
+      fmt::format("{} (request {} of {}): {}{}\n  now {}, models", ActionName(message.action), message.request_id,
+                  message.sender, message.accepted ? "accepted" : "refused: ", message.reason,
+                  message.paused ? "paused" : "not paused");
+  for (const std::uint32_t id : Elements(message.searched_ids)) text += fmt::format(" {}", id);
+  const wirepose_Region& region = message.region;
+  if (region.width_px != 0) {
+    text += fmt::format(", region {} {} {} {}", region.x_px, region.y_px, region.width_px, region.height_px);
+  }
+  return text + "\n";
+}
+
+std::string ToText(const diagnostic_msgs_msg_dds__DiagnosticArray_& message) {
+  constexpr const char* kLevels[] = {"ok", "warning", "error", "stale"};
+  std::string text;
+  for (const auto& status : Elements(message.status)) {
+    text += fmt::format("{}: {}: {}\n", status.name, kLevels[status.level % 4], status.message);
+    for (const auto& value : Elements(status.values)) text += fmt::format("  {}: {}\n", value.key, value.value);
+  }
   return text;
 }
 

@@ -6,7 +6,7 @@
 
 namespace wirepose::cli {
 
-// Adds `sim render --out DIR [--frames N] [--scenes N] [--seed S] [--models DIR]`. Throws as
+// Adds `sim render --out DIR [--scenario FILE]` and `sim suite --out DIR [--only NAME]`. Throws as
 // command.h says.
 void AddSimCommand(CLI::App& app);
 

@@ -1,6 +1,8 @@
 #include "watch_command.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <iostream>
@@ -9,133 +11,195 @@
 #include <string>
 #include <vector>
 
+#include "bus_options.h"
+#include "command.h"
+#include "live_table.h"
 #include "message_text.h"
-#include "publish/bus.h"
-#include "publish/messages.h"
+#include "subscription.h"
 
 namespace wirepose::cli {
 namespace {
 
 struct WatchOptions {
+  BusOptions bus;
   std::string topic;  // empty: recognition and health
   bool once = false;
   bool json = false;
-  bool loopback = false;
+  bool plain = false;
   std::uint64_t frames = 0;
   double timeout_s = 10;
-  std::uint32_t domain = 0;
 };
 
 using Seconds = std::chrono::duration<double>;
 using Clock = std::chrono::steady_clock;
+
+// A person or a test reads this: waking 200 times a second is soon enough and needs no wait set.
+constexpr dds_duration_t kPause = DDS_MSECS(5);
+constexpr std::chrono::milliseconds kRedraw{200};
+
+LiveTable::Time Now() { return std::chrono::system_clock::now().time_since_epoch(); }
 
 void Print(const std::string& text) {
   std::cout << text << std::flush;
   if (!std::cout) throw WorkFailed("cannot write to standard output; is it a closed pipe?");
 }
 
-// One topic: a reader, and a message to take into.
-class Subscription {
+// --- Message by message
+// -----------------------------------------------------------------------------------------------
+
+class Printer {
  public:
-  virtual ~Subscription() = default;
+  virtual ~Printer() = default;
   // Prints what has arrived, at most `limit` messages; returns how many.
   virtual std::uint64_t PrintNew(bool json, std::uint64_t limit) = 0;
-  // Do messages of this topic count for --frames?
-  bool counts = true;
+  [[nodiscard]] virtual SubscriptionEvents Events() const = 0;
+  bool counts = true;  // do messages of this topic count for --frames?
 };
 
 template <typename Message>
-class TopicSubscription final : public Subscription {
+class TopicPrinter final : public Printer {
  public:
-  TopicSubscription(const Bus& bus, const TopicSpec& topic) {
-    const Result<dds_entity_t, std::string> reader = bus.CreateReader(topic);
-    if (!reader) throw WorkFailed(reader.error());
-    reader_ = *reader;
-  }
+  TopicPrinter(const Bus& bus, TopicId topic) : subscription_(bus, topic) {}
 
   std::uint64_t PrintNew(bool json, std::uint64_t limit) override {
     std::uint64_t printed = 0;
-    void* samples[] = {&message_->value};
-    dds_sample_info_t info{};
-    while (printed < limit && dds_take(reader_, samples, &info, 1, 1) > 0) {
-      if (!info.valid_data) continue;  // only says that a writer has gone
+    while (printed < limit && subscription_.Take()) {
       ++printed;
       // Text may come from another vendor's program: replace what is not UTF-8 instead of failing.
-      Print(json ? ToJson(message_->value).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
-                 : ToText(message_->value));
+      constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+      Print(json ? ToJson(subscription_.message()).dump(-1, ' ', false, kReplace) + "\n"
+                 : ToText(subscription_.message()));
     }
     return printed;
   }
+  [[nodiscard]] SubscriptionEvents Events() const override { return subscription_.Events(); }
 
  private:
-  dds_entity_t reader_ = 0;
-  std::unique_ptr<Message> message_ = std::make_unique<Message>();
+  TypedSubscription<Message> subscription_;
 };
 
-std::vector<std::unique_ptr<Subscription>> Subscribe(const Bus& bus, const std::string& topic) {
-  std::vector<std::unique_ptr<Subscription>> subscriptions;
+std::vector<std::unique_ptr<Printer>> Subscribe(const Bus& bus, const std::string& topic) {
+  std::vector<std::unique_ptr<Printer>> printers;
   if (topic == "detections") {
-    subscriptions.push_back(std::make_unique<TopicSubscription<DetectionsMessage>>(bus, kDetectionsTopic));
+    printers.push_back(std::make_unique<TopicPrinter<DetectionsMessage>>(bus, TopicId::kDetections));
+  }
+  if (topic == "diagnostics") {
+    printers.push_back(std::make_unique<TopicPrinter<DiagnosticsMessage>>(bus, TopicId::kDiagnostics));
+  }
+  if (topic == "command_status") {
+    printers.push_back(std::make_unique<TopicPrinter<CommandStatusMessage>>(bus, TopicId::kCommandStatus));
   }
   if (topic.empty() || topic == "recognition") {
-    subscriptions.push_back(std::make_unique<TopicSubscription<RecognitionMessage>>(bus, kRecognitionTopic));
+    printers.push_back(std::make_unique<TopicPrinter<RecognitionMessage>>(bus, TopicId::kRecognition));
   }
   if (topic.empty() || topic == "health") {
-    subscriptions.push_back(std::make_unique<TopicSubscription<HealthMessage>>(bus, kHealthTopic));
-    subscriptions.back()->counts = !topic.empty();
+    printers.push_back(std::make_unique<TopicPrinter<HealthMessage>>(bus, TopicId::kHealth));
+    printers.back()->counts = !topic.empty();
   }
-  return subscriptions;
+  return printers;
 }
 
-[[noreturn]] void FailForSilence(const WatchOptions& options) {
-  throw WorkFailed(
-      fmt::format("nothing arrived for {} s on DDS domain {}{}; is wireposed running with the same "
-                  "domain and loopback setting?",
-                  options.timeout_s, options.domain, options.loopback ? " (loopback)" : ""));
+[[noreturn]] void FailForSilence(const WatchOptions& options, bool incompatible) {
+  throw WorkFailed(fmt::format(
+      "nothing arrived for {} s on {}; {}", options.timeout_s, Where(options.bus),
+      incompatible ? "wireposed offers less than was asked for: try --best-effort"
+                   : "is wireposed running with the same domain, loopback setting and topic names?"));
 }
 
-void Watch(const WatchOptions& options) {
-  const Result<Bus, std::string> bus = Bus::Open({options.domain, options.loopback});
-  if (!bus) throw WorkFailed(bus.error());
-  const auto subscriptions = Subscribe(*bus, options.topic);
+void PrintMessages(const WatchOptions& options) {
+  const Bus bus = OpenBus(options.bus);
+  const auto printers = Subscribe(bus, options.topic);
   const std::uint64_t wanted = options.once ? 1 : options.frames;  // 0: no end
   std::uint64_t counted = 0;
   Clock::time_point last = Clock::now();
   while (wanted == 0 || counted < wanted) {
     std::uint64_t printed = 0;
-    for (const auto& subscription : subscriptions) {
-      const bool limited = subscription->counts && wanted > 0;
+    for (const auto& printer : printers) {
+      const bool limited = printer->counts && wanted > 0;
       const std::uint64_t limit = limited ? wanted - counted : std::numeric_limits<std::uint64_t>::max();
-      const std::uint64_t news = subscription->PrintNew(options.json, limit);
+      const std::uint64_t news = printer->PrintNew(options.json, limit);
       printed += news;
-      if (subscription->counts) counted += news;
+      if (printer->counts) counted += news;
     }
     const Clock::time_point now = Clock::now();
     if (printed > 0) last = now;
-    if (options.timeout_s > 0 && Seconds(now - last).count() > options.timeout_s) FailForSilence(options);
-    // A person or a test reads this: waking 200 times a second is soon enough and needs no wait
-    // set.
-    if (printed == 0) dds_sleepfor(DDS_MSECS(5));
+    if (options.timeout_s > 0 && Seconds(now - last).count() > options.timeout_s) {
+      FailForSilence(options, printers.front()->Events().incompatible);
+    }
+    if (printed == 0) dds_sleepfor(kPause);
   }
+}
+
+// --- Live
+// ---------------------------------------------------------------------------------------------------------------
+
+std::size_t TerminalWidth() {
+  winsize size{};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 120;
+}
+
+// Says what subscribers of the same kind would be told.
+void NoteEvents(const SubscriptionEvents& events, LiveTable& table) {
+  if (events.liveliness_changed) {
+    table.Note(events.publishers > 0 ? "a publisher is there" : "the publisher is gone", Now());
+  }
+  if (events.deadlines_missed > 0) table.Note(fmt::format("{} deadlines missed", events.deadlines_missed), Now());
+  if (events.incompatible) table.Note("the publisher offers less than was asked for: try --best-effort", Now());
+}
+
+// Draws over itself until interrupted. Silence is shown, not an error: a robot may start later.
+void ShowLive(const WatchOptions& options) {
+  const Bus bus = OpenBus(options.bus);
+  TypedSubscription<RecognitionMessage> recognition(bus, TopicId::kRecognition);
+  TypedSubscription<HealthMessage> health(bus, TopicId::kHealth);
+  LiveTable table;
+  for (;;) {
+    const Clock::time_point next = Clock::now() + kRedraw;
+    while (Clock::now() < next) {
+      while (recognition.Take()) table.Add(recognition.message(), Now());
+      while (health.Take()) table.Add(health.message(), Now());
+      dds_sleepfor(kPause);
+    }
+    NoteEvents(recognition.Events(), table);
+    // Home, draw, clear what is left of the longer picture before.
+    constexpr const char* kHome = "\x1b[H";
+    constexpr const char* kClearBelow = "\x1b[J";
+    std::string picture = table.Draw(Now(), TerminalWidth());
+    for (std::size_t at = 0; (at = picture.find('\n', at)) != std::string::npos; at += 4) {
+      picture.insert(at, "\x1b[K");
+    }
+    Print(kHome + fmt::format("wirepose watch, {} (end with Ctrl-C)\x1b[K\n", Where(options.bus)) + picture +
+          kClearBelow);
+  }
+}
+
+void Watch(const WatchOptions& options) {
+  const bool live = isatty(STDOUT_FILENO) != 0 && !options.once && !options.json && !options.plain &&
+                    options.topic.empty() && options.frames == 0;
+  if (!live) {
+    PrintMessages(options);
+    return;
+  }
+  Print("\x1b[2J");
+  ShowLive(options);
 }
 
 }  // namespace
 
 void AddWatchCommand(CLI::App& app) {
   const auto options = std::make_shared<WatchOptions>();
-  CLI::App* const command = app.add_subcommand("watch", "print what wireposed publishes, live");
-  command->add_option("--topic", options->topic, "only this one; default: recognition and health")
-      ->check(CLI::IsMember({"detections", "recognition", "health"}));
+  CLI::App* const command =
+      app.add_subcommand("watch", "show what wireposed publishes: a live table on a terminal, else one by one");
+  command->add_option("--topic", options->topic, "only this one, message by message; default: recognition and health")
+      ->check(CLI::IsMember({"detections", "recognition", "health", "diagnostics", "command_status"}));
   command->add_flag("--once", options->once, "end after the first message");
   command->add_option("--frames", options->frames, "end after that many messages (health counts only when chosen)");
   command->add_flag("--json", options->json, "one JSON object a line");
+  command->add_flag("--plain", options->plain, "message by message also on a terminal");
   command->add_option("--timeout", options->timeout_s, "fail after that many seconds without a message; 0: never")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--domain", options->domain, "DDS domain")
-      ->check(CLI::Range(0u, kMaxDomain))
-      ->capture_default_str();
-  command->add_flag("--loopback", options->loopback, "only this machine, as dds.loopback of wireposed");
+  AddBusOptions(*command, options->bus);
   command->callback([options] { Watch(*options); });
 }
 

@@ -6,7 +6,7 @@
 
 namespace wirepose::evaluation {
 CandidateLog::CandidateLog(const std::filesystem::path& file) : out_(file) {
-  out_ << "scene_id,im_id,obj_id,error_d,visib_fract,score,edges,contrast,faces,overrun,support,inside,visible_px,"
+  out_ << "scene_id,im_id,obj_id,error_d,visib_fract,score,edges,contrast,distinct,on,through,before,drop,level,faces,overrun,support,inside,visible_px,"
           "supported_edges,supported_faces,rms_px,inliers\n";
 }
 
@@ -24,9 +24,10 @@ void CandidateLog::Add(const FrameView& view) {
     }
     const Evidence& e = candidate.evidence;
     out_ << fmt::format(
-        "{},{},{},{:.4f},{:.3f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.1f},{},{},{:.4f},{}\n",
+        "{},{},{},{:.4f},{:.3f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.1f},"
+        "{},{},{:.4f},{}\n",
         view.entry.scene_id, view.entry.im_id, model.view.id, error, visible, candidate.score, e.edges, e.contrast,
-        e.faces, e.overrun, e.support, e.inside, e.visible_px, e.supported_edges, e.supported_faces,
+        e.distinct, e.surface.on, e.surface.through, e.surface.before, e.surface.drop, e.surface.level, e.faces, e.overrun, e.support, e.inside, e.visible_px, e.supported_edges, e.supported_faces,
         candidate.pose.rms_px, candidate.pose.inliers);
   }
 }

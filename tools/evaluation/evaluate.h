@@ -22,7 +22,7 @@ struct EvaluationOptions {
   std::filesystem::path models;  // .wpm file or folder; empty: compile DATASET/models
   std::vector<int> object_ids;   // search only for these; empty: for all
   std::size_t frame_limit = 0;   // the first so many frames, and judge by them alone; 0: all
-  bool trace = false;            // follow the true instances through the stages; the time of it counts as the stages'
+  bool trace = false;            // follow the true instances through the stages
   double min_score = 0;          // detections below are dropped before anything else looks at them
 };
 

@@ -11,14 +11,14 @@ import sys
 
 import numpy as np
 
-NAMES = ['bias', 'edge_density', 'faces', 'contrast', 'overrun', 'inside']
+COLUMNS = ['contrast', 'distinct', 'overrun', 'inside', 'faces', 'on', 'through', 'drop']
+NAMES = ['bias', 'edge_density'] + COLUMNS
 LOG_LENGTH = 1.0  # given, see ScoreParams
 
 
 def features(row):
     length = max(1.0, float(row['visible_px']))
-    return [1.0, 100 * float(row['edges']) / length, float(row['faces']), float(row['contrast']),
-            float(row['overrun']), float(row['inside'])]
+    return [1.0, 100 * float(row['edges']) / length] + [float(row[name]) for name in COLUMNS]
 
 
 def given(row):

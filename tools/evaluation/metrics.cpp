@@ -19,11 +19,11 @@ using Match = std::vector<std::optional<std::size_t>>;
 struct Encounter {
   const FrameTruth* frame = nullptr;
   int object_id = 0;
-  const ObjectTruth* object = nullptr;  // null: detections of an object that the data set does not know
-  std::vector<const InstanceTruth*> instances;
-  std::vector<bool> counts;  // by instance
-  std::vector<const Estimate*> detections;
-  std::vector<std::vector<PoseError>> errors;  // [detection][instance]
+  const ObjectTruth* object = nullptr;          // null: detections of an object that the data set does not know
+  std::vector<const InstanceTruth*> instances;  // of frame->instances
+  std::vector<bool> counts;                     // by instance
+  std::vector<const Estimate*> detections;      // of the span that is judged
+  std::vector<std::vector<PoseError>> errors;   // [detection][instance]
 };
 
 // Errors of `rows` (detections) by `columns` (instances).
@@ -100,6 +100,10 @@ HitCount* VisibilityBin(ObjectScore& score, double visible_fraction) {
   return nullptr;
 }
 
+std::size_t PlaceOf(const Encounter& e, std::size_t j) {
+  return static_cast<std::size_t>(e.instances[j] - e.frame->instances.data());
+}
+
 std::optional<double> BestMssd(const Encounter& e, std::size_t instance) {
   std::optional<double> best;
   for (const auto& row : e.errors) best = std::min(best.value_or(row[instance].mssd_mm), row[instance].mssd_mm);
@@ -112,6 +116,7 @@ InstanceOutcome Outcome(const Encounter& e, std::size_t j, std::optional<std::si
   outcome.scene_id = e.frame->scene_id;
   outcome.image_id = e.frame->image_id;
   outcome.object_id = e.object_id;
+  outcome.instance = PlaceOf(e, j);
   outcome.visible_fraction = e.instances[j]->visible_fraction;
   outcome.truth = e.instances[j]->T_camera_model;
   outcome.hit = detection.has_value();
@@ -155,48 +160,57 @@ void CountInstances(const Encounter& e, const Match& match, ObjectScore& score, 
   }
 }
 
-// Returns the number of false positives.
-int CountDetections(const Encounter& e, const Match& match, ObjectScore& score, Metrics& metrics) {
+// Returns the number of false positives. `first` is the first of all estimates that are judged.
+int CountDetections(const Encounter& e, const Match& match, const Estimate* first, ObjectScore& score,
+                    Metrics& metrics) {
   int false_positives = 0;
   for (std::size_t i = 0; i < match.size(); ++i) {
+    const Estimate& d = *e.detections[i];
+    Judgement& judgement = metrics.judgements[static_cast<std::size_t>(&d - first)];
+    judgement.verdict = Verdict::kFalse;
     if (match[i]) {
-      score.dont_care += !e.counts[*match[i]];
+      const bool counts = e.counts[*match[i]];
+      judgement = {counts ? Verdict::kHit : Verdict::kDontCare, PlaceOf(e, *match[i])};
+      score.dont_care += !counts;
       continue;
     }
     ++false_positives;
-    const Estimate& d = *e.detections[i];
     metrics.false_positives.push_back({d.scene_id, d.image_id, d.object_id, d.score, d.T_camera_model.t_mm});
   }
   score.false_positives += false_positives;
   return false_positives;
 }
 
-int CountEncounter(const Encounter& e, int image_width_px, Metrics& metrics) {
+int CountEncounter(const Encounter& e, const Estimate* first, int image_width_px, Metrics& metrics) {
   ObjectScore& score = metrics.per_object[e.object_id];
   const double hit_mm = kHitShareOfDiameter * (e.object != nullptr ? e.object->diameter_mm : 1);
   const ErrorTable mssd = Select(e, Indices(e.detections.size()), Indices(e.instances.size()), &PoseError::mssd_mm);
   const Match match = MatchGreedily(mssd, hit_mm, e.counts);
   CountInstances(e, match, score, metrics);
   CountThresholdHits(e, match, image_width_px, score);
-  return CountDetections(e, match, score, metrics);
+  return CountDetections(e, match, first, score, metrics);
 }
 
-using EstimatesByKey = std::map<std::tuple<int, int, int>, std::vector<const Estimate*>>;
+// `first` as in CountDetections; `by_key` by scene, image and object.
+struct Estimates {
+  const Estimate* first = nullptr;
+  std::map<std::tuple<int, int, int>, std::vector<const Estimate*>> by_key;
+};
 
-void CountFrame(const GroundTruth& truth, const FrameTruth& frame, const EstimatesByKey& estimates, Metrics& metrics) {
+void CountFrame(const GroundTruth& truth, const FrameTruth& frame, const Estimates& estimates, Metrics& metrics) {
   std::set<int> ids;
   for (const auto& [id, object] : truth.objects) ids.insert(id);
-  for (const auto& [key, list] : estimates) {
+  for (const auto& [key, list] : estimates.by_key) {
     if (std::get<0>(key) == frame.scene_id && std::get<1>(key) == frame.image_id) ids.insert(std::get<2>(key));
   }
   int false_positives = 0;
   for (int id : ids) {
-    const auto found = estimates.find({frame.scene_id, frame.image_id, id});
+    const auto found = estimates.by_key.find({frame.scene_id, frame.image_id, id});
     const auto object = truth.objects.find(id);
     const ObjectTruth* known = object != truth.objects.end() ? &object->second : nullptr;
-    auto detections = found != estimates.end() ? found->second : std::vector<const Estimate*>{};
+    auto detections = found != estimates.by_key.end() ? found->second : std::vector<const Estimate*>{};
     const Encounter e = Meet(frame, id, known, std::move(detections), metrics.options);
-    false_positives += CountEncounter(e, truth.image_width_px, metrics);
+    false_positives += CountEncounter(e, estimates.first, truth.image_width_px, metrics);
   }
   if (!frame.instances.empty()) return;
   ++metrics.negative_frames;
@@ -295,10 +309,11 @@ Metrics ComputeMetrics(const GroundTruth& truth, std::span<const Estimate> estim
   metrics.frames = static_cast<int>(truth.frames.size());
   metrics.rows = static_cast<int>(estimates.size());
   metrics.time = MeasureRowTimes(truth, estimates);
-  EstimatesByKey by_key;
-  for (const Estimate& e : estimates) by_key[{e.scene_id, e.image_id, e.object_id}].push_back(&e);
+  metrics.judgements.resize(estimates.size());
+  Estimates grouped{estimates.data(), {}};
+  for (const Estimate& e : estimates) grouped.by_key[{e.scene_id, e.image_id, e.object_id}].push_back(&e);
   for (const auto& [id, object] : truth.objects) metrics.per_object[id];
-  for (const FrameTruth& frame : truth.frames) CountFrame(truth, frame, by_key, metrics);
+  for (const FrameTruth& frame : truth.frames) CountFrame(truth, frame, grouped, metrics);
   for (const auto& [id, score] : metrics.per_object) metrics.total.Add(score);
   return metrics;
 }

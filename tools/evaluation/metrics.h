@@ -9,6 +9,7 @@
 #define WIREPOSE_TOOLS_EVALUATION_METRICS_H_
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -69,6 +70,7 @@ struct InstanceOutcome {
   int scene_id = 0;
   int image_id = 0;
   int object_id = 0;
+  std::size_t instance = 0;  // index into the frame's FrameTruth::instances, the order of the data set's file
   double visible_fraction = 1;
   RigidMm truth;  // of its symmetric poses the one nearest to the hit
   bool hit = false;
@@ -85,6 +87,13 @@ struct FalsePositive {
   int object_id = 0;
   double score = 0;
   Vector3d t_mm = Vector3d::Zero();
+};
+
+// What became of one estimate.
+enum class Verdict : std::uint8_t { kHit, kFalse, kDontCare, kUnknownFrame };
+struct Judgement {
+  Verdict verdict = Verdict::kUnknownFrame;
+  std::size_t instance = 0;  // as in InstanceOutcome; valid for kHit and kDontCare
 };
 
 // Times of the frames that have at least one row, seconds.
@@ -105,6 +114,7 @@ struct Metrics {
   ObjectScore total;
   std::vector<InstanceOutcome> instances;
   std::vector<FalsePositive> false_positives;
+  std::vector<Judgement> judgements;  // one per estimate, in the order given
 };
 
 // Rows that name frames which the truth does not have are counted in `rows` and otherwise ignored.

@@ -28,6 +28,13 @@ FrameTimes StageClock::Stop() {
   return times_;
 }
 
+void StageClock::Skip() {
+  const Seconds now = Now();
+  start_.wall += now.wall - last_.wall;
+  start_.cpu += now.cpu - last_.cpu;
+  last_ = now;
+}
+
 void StageClock::DoStageDone(Stage stage) {
   const Seconds now = Now();
   Seconds& slot = times_.stages[static_cast<std::size_t>(stage)];

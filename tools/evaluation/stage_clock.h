@@ -26,6 +26,9 @@ class StageClock final : public StageObserver {
  public:
   void Start();
   FrameTimes Stop();
+  // The time since the last stage was not the recognizer's: an observer's. It counts neither as the next stage's nor in
+  // the total.
+  void Skip();
 
  private:
   void DoStageDone(Stage stage) override;

@@ -96,7 +96,7 @@ void StageTrace::Start(const std::vector<dataset::TrueInstance>& truth) {
 }
 
 void StageTrace::DoStageDone(Stage stage) {
-  if (next_ != nullptr) next_->StageDone(stage);
+  if (clock_ != nullptr) clock_->StageDone(stage);
   const auto pose_of = [](const auto& p) { return Pose{p.R.template cast<double>(), p.t.template cast<double>()}; };
   switch (stage) {
     case Stage::kStereoLines: TraceLines(); break;
@@ -107,6 +107,7 @@ void StageTrace::DoStageDone(Stage stage) {
       break;
     default: break;
   }
+  if (clock_ != nullptr) clock_->Skip();
 }
 
 void StageTrace::TraceLines() {

@@ -8,6 +8,7 @@
 
 #include "hal/dataset/dataset.h"
 #include "pipeline/recognizer.h"
+#include "tools/evaluation/stage_clock.h"
 
 namespace wirepose::evaluation {
 
@@ -36,11 +37,11 @@ std::string_view CauseName(MissCause cause);
 // The first stage that lost it. A pose within reach of the next stage: 0.3 d of hypotheses, 0.2 d of sets, 0.1 d refined.
 MissCause CauseOf(const InstanceTrace& trace);
 
-// Observes Process on the caller's thread and passes every call on to `next` (may be null), which is called first so
-// that a clock does not time the tracing. Holds references; one frame at a time.
+// Observes Process on the caller's thread and passes every call on to `clock` (may be null), which does not time the
+// tracing. Holds references; one frame at a time.
 class StageTrace final : public StageObserver {
  public:
-  StageTrace(const Recognizer& recognizer, StageObserver* next) : recognizer_(recognizer), next_(next) {}
+  StageTrace(const Recognizer& recognizer, StageClock* clock) : recognizer_(recognizer), clock_(clock) {}
 
   // Before Process: the frame's truth, poses in the raw left camera.
   void Start(const std::vector<dataset::TrueInstance>& truth);
@@ -54,7 +55,7 @@ class StageTrace final : public StageObserver {
   void TracePoses(const List& list, TracedPose InstanceTrace::*slot, const PoseOf& pose_of);
 
   const Recognizer& recognizer_;
-  StageObserver* next_;
+  StageClock* clock_;
   const std::vector<dataset::TrueInstance>* truth_ = nullptr;
   std::vector<InstanceTrace> traces_;
   std::size_t models_seen_ = 0;

@@ -1,4 +1,4 @@
-#include "app/yaml_section.h"
+#include "yaml/yaml_section.h"
 
 #include <charconv>
 #include <cmath>
@@ -6,9 +6,7 @@
 #include <limits>
 #include <sstream>
 
-#include "app/failure.h"
-
-namespace wirepose::app {
+namespace wirepose::yaml {
 namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = 1 << 20;
@@ -16,15 +14,15 @@ constexpr std::uintmax_t kMaxFileBytes = 1 << 20;
 std::string ReadWhole(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
-    throw UsageError(file.string() + ": no such file; name a configuration with --config");
+    throw YamlError(file.string() + ": no such file; check the path");
   }
   if (std::filesystem::file_size(file, error) > kMaxFileBytes || error) {
-    throw UsageError(file.string() + ": larger than 1 MiB; this is no configuration");
+    throw YamlError(file.string() + ": larger than 1 MiB; give a file of settings");
   }
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
-  if (!in) throw UsageError(file.string() + ": cannot be read; check its permissions");
+  if (!in) throw YamlError(file.string() + ": cannot be read; check its permissions");
   return text.str();
 }
 
@@ -42,7 +40,7 @@ YAML::Node Parse(const std::filesystem::path& file) {
   try {
     return YAML::Load(ReadWhole(file));
   } catch (const YAML::Exception& e) {
-    throw UsageError(file.string() + ":" + std::to_string(e.mark.line + 1) + ": not YAML: " + OneLine(e.msg) +
+    throw YamlError(file.string() + ":" + std::to_string(e.mark.line + 1) + ": not YAML: " + OneLine(e.msg) +
                      "; correct the line");
   }
 }
@@ -86,6 +84,24 @@ YamlSection YamlSection::Section(const std::string& key) {
   return {file_, name_.empty() ? key : name_ + "." + key, Find(key)};
 }
 
+std::vector<YamlSection> YamlSection::Sections(const std::string& key) {
+  std::vector<YamlSection> sections;
+  const YAML::Node list = FindList(key, "a list of mappings");
+  if (!list) return sections;
+  for (const YAML::Node& item : list) {
+    std::string name = name_.empty() ? key : name_ + "." + key;
+    name.append("[").append(std::to_string(sections.size())).append("]");
+    if (!item.IsMap()) RefuseAt(item.Mark(), key, "not a mapping; write 'key: value' lines");
+    sections.push_back({file_, name, item});
+  }
+  return sections;
+}
+
+bool YamlSection::Has(const std::string& key) const {
+  const YAML::Node& node = node_;
+  return node && node.IsMap() && node[key];
+}
+
 bool YamlSection::Read(const std::string& key, bool& value) {
   const YAML::Node node = FindScalar(key, "true or false");
   if (!node) return false;
@@ -119,12 +135,50 @@ bool YamlSection::Read(const std::string& key, std::int64_t& value, std::int64_t
 bool YamlSection::Read(const std::string& key, double& value, double least, double most) {
   const YAML::Node node = FindScalar(key, "a number");
   if (!node) return false;
-  double number = 0;
-  // The negated comparison refuses "nan" too.
-  if (!ParseNumber(node.Scalar(), number) || !(number >= least && number <= most)) {
-    Refuse(key, Quoted(node.Scalar()) + " is not a number from " + Text(least) + " to " + Text(most));
+  value = Number(node, key, least, most);
+  return true;
+}
+
+bool YamlSection::ReadRange(const std::string& key, double& low, double& high, double least, double most) {
+  const YAML::Node node = Find(key);
+  if (!node) return false;
+  if (node.IsScalar()) {
+    low = high = Number(node, key, least, most);
+    return true;
   }
-  value = number;
+  if (!node.IsSequence() || node.size() != 2) Refuse(key, "needs a number or two of them, as [low, high]");
+  const double first = Number(node[0], key, least, most), second = Number(node[1], key, least, most);
+  if (first > second) Refuse(key, "begins with the greater number; write [low, high]");
+  low = first;
+  high = second;
+  return true;
+}
+
+bool YamlSection::Read(const std::string& key, std::vector<std::string>& value) {
+  const YAML::Node node = Find(key);
+  if (!node) return false;
+  std::vector<std::string> words;
+  if (node.IsScalar()) words.push_back(node.Scalar());
+  if (node.IsSequence()) {
+    for (const YAML::Node& item : node) words.push_back(item.IsScalar() ? item.Scalar() : std::string());
+  }
+  for (const std::string& word : words) {
+    if (word.empty()) Refuse(key, "needs a word or a list of words, as [a, b]");
+  }
+  if (words.empty()) Refuse(key, "needs a word or a list of words, as [a, b]");
+  value = words;
+  return true;
+}
+
+bool YamlSection::Read(const std::string& key, std::vector<double>& value, double least, double most) {
+  const YAML::Node node = Find(key);
+  if (!node) return false;
+  value.clear();
+  if (node.IsScalar()) value.push_back(Number(node, key, least, most));
+  if (node.IsSequence()) {
+    for (const YAML::Node& item : node) value.push_back(Number(item, key, least, most));
+  }
+  if (value.empty()) Refuse(key, "needs a number or a list of numbers, as [1, 2]");
   return true;
 }
 
@@ -199,6 +253,17 @@ YAML::Node YamlSection::FindList(const std::string& key, const char* kind) {
   return node;
 }
 
+double YamlSection::Number(const YAML::Node& node, const std::string& key, double least, double most) const {
+  double number = 0;
+  const bool is_number = node.IsScalar() && ParseNumber(node.Scalar(), number);
+  // The negated comparison refuses "nan" too.
+  if (!is_number || !(number >= least && number <= most)) {
+    const std::string what = node.IsScalar() ? Quoted(node.Scalar()) : "this";
+    RefuseAt(node.Mark(), key, what + " is not a number from " + Text(least) + " to " + Text(most));
+  }
+  return number;
+}
+
 std::filesystem::path YamlSection::Resolve(const std::string& text) const {
   const std::filesystem::path path(text);
   return path.is_absolute() ? path : (file_.parent_path() / path).lexically_normal();
@@ -211,7 +276,7 @@ void YamlSection::RefuseAt(const YAML::Mark& mark, const std::string& key, const
   if (!name.empty() && !key.empty()) name.append(".");
   name.append(key);
   if (!name.empty()) name.append(": ");
-  throw UsageError(place + ": " + OneLine(name + reason));
+  throw YamlError(place + ": " + OneLine(name + reason));
 }
 
-}  // namespace wirepose::app
+}  // namespace wirepose::yaml

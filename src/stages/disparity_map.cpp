@@ -1,0 +1,219 @@
+#include "stages/disparity_map.h"
+
+#include <algorithm>
+
+#include "base/simd.h"
+
+namespace wirepose {
+namespace {
+
+using Scratch = DisparityScratch;
+constexpr int kDepth = kMapDisparities;
+constexpr std::uint16_t kGuard = 0x3FFF;
+
+// Means of 2 x 2 pixels of row pair j.
+void HalveRow(const NormalizedPlane& plane, int j, int width, Scratch::Row& out) {
+  const std::uint8_t* a = plane.data() + static_cast<std::ptrdiff_t>(2 * j) * kMaxImageWidth;
+  const std::uint8_t* b = a + kMaxImageWidth;
+  for (int i = 0; i < width; ++i) {
+    out[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>((a[2 * i] + a[2 * i + 1] + b[2 * i] + b[2 * i + 1] + 2) / 4);
+  }
+}
+
+// difference[x][d] = |left(x) - right(x - d)|, clipped; what lies left of the right image costs the most.
+WIREPOSE_VECTOR_KERNEL void FillDifferences(const Scratch::Row& left, const std::uint8_t* right_reversed, int width,
+                                            std::uint8_t clip, std::uint8_t* out) {
+  for (int x = 0; x < width; ++x) {
+    const std::uint8_t l = left[static_cast<std::size_t>(x)];
+    const std::uint8_t* r = right_reversed + (width - 1 - x);  // right(x - d) at [d]
+    std::uint8_t* o = out + x * kDepth;
+    for (int d = 0; d < kDepth; ++d) {
+      const auto difference = static_cast<std::uint8_t>((l > r[d] ? l : r[d]) - (l > r[d] ? r[d] : l));
+      o[d] = difference < clip ? difference : clip;
+    }
+    for (int d = x + 1; d < kDepth; ++d) o[d] = clip;
+  }
+}
+
+WIREPOSE_VECTOR_KERNEL void SumRows(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, int count,
+                                    std::uint16_t* out) {
+  for (int i = 0; i < count; ++i) out[i] = static_cast<std::uint16_t>(a[i] + b[i] + c[i]);
+}
+
+// cost[x] = column[x - 1] + column[x] + column[x + 1], the border repeated.
+WIREPOSE_VECTOR_KERNEL void SumColumns(const std::uint16_t* column, int width, std::uint16_t* cost) {
+  for (int x = 0; x < width; ++x) {
+    const std::uint16_t* before = column + std::max(x - 1, 0) * kDepth;
+    const std::uint16_t* here = column + x * kDepth;
+    const std::uint16_t* after = column + std::min(x + 1, width - 1) * kDepth;
+    std::uint16_t* out = cost + x * kDepth;
+    for (int d = 0; d < kDepth; ++d) out[d] = static_cast<std::uint16_t>(before[d] + here[d] + after[d]);
+  }
+}
+
+struct Steps {
+  std::uint16_t small, large;
+};
+
+// One step of a path: L(d) = C(d) + min(L'(d), L'(d +- 1) + small, min L' + large) - min L'. Adds L to `sum`, writes it
+// to `out` (guards stay) and returns its minimum. `previous` and `out` point at disparity 0 behind the guard.
+inline std::uint16_t Advance(const std::uint16_t* cost, const std::uint16_t* previous, std::uint16_t lowest, Steps steps,
+                             std::uint16_t* out, std::uint16_t* sum) {
+  const auto limit = static_cast<std::uint16_t>(lowest + steps.large);
+  std::uint16_t least = 0xFFFF;
+  for (int d = 0; d < kDepth; ++d) {
+    const std::uint16_t side = previous[d - 1] < previous[d + 1] ? previous[d - 1] : previous[d + 1];
+    const auto stepped = static_cast<std::uint16_t>(side + steps.small);
+    std::uint16_t m = previous[d] < stepped ? previous[d] : stepped;
+    m = m < limit ? m : limit;
+    const auto value = static_cast<std::uint16_t>(cost[d] + m - lowest);
+    out[d] = value;
+    sum[d] = static_cast<std::uint16_t>(sum[d] + value);
+    least = least < value ? least : value;
+  }
+  return least;
+}
+
+void Reset(Scratch::Path& path) {
+  path.fill(0);
+  path.front() = path.back() = kGuard;
+}
+
+// Sums the three paths of a row into scratch.sum; rows alternate in `parity`.
+WIREPOSE_VECTOR_KERNEL void SumPaths(Steps steps, int width, std::size_t parity, Scratch& scratch) {
+  std::fill(scratch.sum.begin(), scratch.sum.begin() + static_cast<std::ptrdiff_t>(width) * kDepth, std::uint16_t{0});
+  Scratch::Path path[2];
+  Reset(path[0]);
+  Reset(path[1]);
+  std::uint16_t lowest = 0;
+  for (int x = 0; x < width; ++x) {
+    const std::uint16_t* cost = scratch.cost.data() + x * kDepth;
+    std::uint16_t* sum = scratch.sum.data() + x * kDepth;
+    lowest = Advance(cost, path[x % 2].data() + 1, lowest, steps, path[(x + 1) % 2].data() + 1, sum);
+    const auto column = static_cast<std::size_t>(x);
+    std::uint16_t& above_lowest = scratch.above_lowest[column];
+    above_lowest = Advance(cost, scratch.above[1 - parity][column].data() + 1, above_lowest, steps,
+                           scratch.above[parity][column].data() + 1, sum);
+  }
+  Reset(path[0]);
+  Reset(path[1]);
+  lowest = 0;
+  for (int x = width - 1; x >= 0; --x) {
+    lowest = Advance(scratch.cost.data() + x * kDepth, path[x % 2].data() + 1, lowest, steps, path[(x + 1) % 2].data() + 1,
+                     scratch.sum.data() + x * kDepth);
+  }
+}
+
+// The first of the lowest sums: the lowest of each block of lanes, then the place in its block.
+inline int FindLowest(const std::uint16_t* sum) {
+  constexpr int kBlock = 16;
+  static_assert(kDepth % kBlock == 0);
+  int block = 0;
+  std::uint16_t lowest = 0xFFFF;
+  for (int b = 0; b < kDepth; b += kBlock) {
+    std::uint16_t here = 0xFFFF;
+    for (int d = b; d < b + kBlock; ++d) here = here < sum[d] ? here : sum[d];
+    if (here >= lowest) continue;
+    lowest = here;
+    block = b;
+  }
+  int d = block;
+  while (sum[d] != lowest) ++d;
+  return d;
+}
+
+// The winner of every pixel in scratch.best_left, and of every pixel of the right image.
+WIREPOSE_VECTOR_KERNEL void ChooseBest(int width, Scratch& scratch) {
+  auto& [right_cost, right_disparity] = scratch.best_right;
+  right_cost.fill(0xFFFF);
+  right_disparity.fill(0);
+  for (int x = 0; x < width; ++x) {
+    const std::uint16_t* sum = scratch.sum.data() + x * kDepth;
+    const int d = FindLowest(sum);
+    const std::uint16_t lowest = sum[d];
+    scratch.best_left[static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(d);
+    const auto r = static_cast<std::size_t>(std::max(0, x - d));
+    if (x < d || lowest >= right_cost[r]) continue;
+    right_cost[r] = lowest;
+    right_disparity[r] = static_cast<std::uint16_t>(d);
+  }
+}
+
+// Vertex of the parabola through the costs beside the winner, in units of the map.
+std::uint16_t Refined(const std::uint16_t* sum, int d) {
+  constexpr int kUnit = static_cast<int>(DisparityMap::kOne) * DisparityMap::kScale;
+  int shift = 0;
+  if (d > 0 && d + 1 < kDepth) {
+    const int before = sum[d - 1], here = sum[d], after = sum[d + 1];
+    const int bend = before - 2 * here + after;
+    if (bend > 0) shift = (before - after) * kUnit / (2 * bend);
+  }
+  return static_cast<std::uint16_t>(std::max(1, d * kUnit + std::clamp(shift, -kUnit / 2, kUnit / 2)));
+}
+
+void WriteRow(int max_asymmetry, int width, const Scratch& scratch, std::uint16_t* out) {
+  for (int x = 0; x < width; ++x) {
+    out[x] = DisparityMap::kUnknown;
+    const int d = scratch.best_left[static_cast<std::size_t>(x)];
+    if (d > x) continue;
+    const int back = scratch.best_right[1][static_cast<std::size_t>(x - d)];
+    // Nothing is at infinity: blank areas that no texture reaches end up there.
+    if (d > 0 && std::abs(back - d) <= max_asymmetry) out[x] = Refined(scratch.sum.data() + x * kDepth, d);
+  }
+}
+
+// A pixel that fewer than two of its four neighbours confirm is unknown.
+void DropSpeckles(const DisparityMap& raw, int j, std::uint16_t* out) {
+  constexpr int kTolerance = static_cast<int>(2 * DisparityMap::kOne);
+  const auto at = [&](int x, int y) { return int{raw.disparity[static_cast<std::size_t>(y * DisparityMap::kMaxWidth + x)]}; };
+  for (int x = 0; x < raw.width; ++x) {
+    const int here = at(x, j);
+    int confirmed = 0;
+    if (x > 0) confirmed += std::abs(at(x - 1, j) - here) <= kTolerance ? 1 : 0;
+    if (x + 1 < raw.width) confirmed += std::abs(at(x + 1, j) - here) <= kTolerance ? 1 : 0;
+    if (j > 0) confirmed += std::abs(at(x, j - 1) - here) <= kTolerance ? 1 : 0;
+    if (j + 1 < raw.height) confirmed += std::abs(at(x, j + 1) - here) <= kTolerance ? 1 : 0;
+    out[x] = static_cast<std::uint16_t>(confirmed >= 2 ? here : int{DisparityMap::kUnknown});
+  }
+}
+
+void ReadDifferences(const DisparityMapParams& params, const NormalizedPlane& left, const NormalizedPlane& right, int j,
+                     int width, Scratch& scratch) {
+  Scratch::Row l, r;
+  HalveRow(left, j, width, l);
+  HalveRow(right, j, width, r);
+  std::array<std::uint8_t, Scratch::kWidth + kDepth> reversed{};
+  for (int x = 0; x < width; ++x) reversed[static_cast<std::size_t>(width - 1 - x)] = r[static_cast<std::size_t>(x)];
+  FillDifferences(l, reversed.data(), width, static_cast<std::uint8_t>(std::min<int>(params.max_difference, 255)),
+                  scratch.difference[static_cast<std::size_t>(j % 3)].data());
+}
+
+}  // namespace
+
+void ComputeDisparityMap(const DisparityMapParams& params, int width, int height, const NormalizedPlane& left,
+                         const NormalizedPlane& right, DisparityScratch& scratch, DisparityMap& out) {
+  out.width = width / DisparityMap::kScale;
+  out.height = height / DisparityMap::kScale;
+  for (auto& row : scratch.above) {
+    for (Scratch::Path& path : row) Reset(path);
+  }
+  scratch.above_lowest.fill(0);
+  DisparityMap& raw = scratch.raw;
+  raw.width = out.width;
+  raw.height = out.height;
+  const auto row = [&](int j) { return scratch.difference[static_cast<std::size_t>(std::clamp(j, 0, out.height - 1) % 3)].data(); };
+  for (int j = 0; j < std::min(2, out.height); ++j) ReadDifferences(params, left, right, j, out.width, scratch);
+  for (int j = 0; j < out.height; ++j) {
+    SumRows(row(j - 1), row(j), row(j + 1), out.width * kDepth, scratch.column.data());
+    SumColumns(scratch.column.data(), out.width, scratch.cost.data());
+    if (j + 2 < out.height) ReadDifferences(params, left, right, j + 2, out.width, scratch);
+    SumPaths({params.small_step, params.large_step}, out.width, static_cast<std::size_t>(j % 2), scratch);
+    ChooseBest(out.width, scratch);
+    WriteRow(params.max_asymmetry, out.width, scratch, raw.disparity.data() + static_cast<std::ptrdiff_t>(j) * DisparityMap::kMaxWidth);
+  }
+  for (int j = 0; j < out.height; ++j) {
+    DropSpeckles(raw, j, out.disparity.data() + static_cast<std::ptrdiff_t>(j) * DisparityMap::kMaxWidth);
+  }
+}
+
+}  // namespace wirepose
