@@ -15,7 +15,7 @@ struct Camera;
 
 class IndirectLight {
  public:
-  static constexpr int kStep = 2;  // px between grid places
+  static constexpr int kStep = 3;   // px between grid places
   static constexpr int kRays = 16;  // sent out from each
 
   // Traces the grid over the image and `margin` pixels around it. The result does not depend on

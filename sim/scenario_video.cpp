@@ -36,19 +36,14 @@ StereoRig ScenarioVideo::RigAt(std::uint64_t sequence) const {
   return scenario_->RigAt(static_cast<double>(sequence) / rate_hz_);
 }
 
-StereoShot ScenarioVideo::Shoot(std::uint64_t sequence) const { return ShootApart(sequence, 0, 0); }
-
-StereoShot ScenarioVideo::ShootApart(std::uint64_t sequence, double lag_s, double drift_rad) const {
+StereoShot ScenarioVideo::Shoot(std::uint64_t sequence, const ShotChange& change) const {
   RenderOptions options = options_;
   options.seed = Mix(seed_, sequence);
   const double time_s = static_cast<double>(sequence) / rate_hz_;
-  const StereoRig left = scenario_->RigAt(time_s);
-  StereoRig right = lag_s == 0 ? left : scenario_->RigAt(time_s + lag_s);
-  if (drift_rad != 0) {
-    Pose& T = right.calibration.T_right_left;
-    const Matrix3d turn = Eigen::AngleAxisd(drift_rad, Vector3d::UnitY()).toRotationMatrix();
-    T = Pose{turn, Vector3d::Zero()} * T;
-  }
+  StereoRig left = scenario_->RigAt(time_s), right = scenario_->RigAt(time_s + change.right_lag_s);
+  const Matrix3d turn = Eigen::AngleAxisd(change.drift_rad, Vector3d::UnitY()).toRotationMatrix();
+  right.calibration.T_right_left = Pose{turn, Vector3d::Zero()} * right.calibration.T_right_left;
+  left.light = right.light = static_cast<float>(change.light);
   return ShootStereo(*renderer_, left, right, options);
 }
 

@@ -13,6 +13,15 @@
 
 namespace wirepose::sim {
 
+// What a fault does to the rig for one frame.
+struct ShotChange {
+  double right_lag_s = 0;  // the right eye is exposed later
+  double drift_rad = 0;    // the right camera is turned about its y axis against the calibration
+  double light = 1;        // times the exposure
+
+  friend bool operator==(const ShotChange&, const ShotChange&) = default;
+};
+
 // Frames may be shot in any order and on any thread; each is a pure function of specification,
 // scene, targets and number.
 class ScenarioVideo {
@@ -23,10 +32,7 @@ class ScenarioVideo {
                                                                  const std::vector<TargetMesh>& targets, int threads = 2);
 
   [[nodiscard]] StereoRig RigAt(std::uint64_t sequence) const;
-  [[nodiscard]] StereoShot Shoot(std::uint64_t sequence) const;
-  // With the right eye exposed `lag_s` after the left one, and the right camera turned by
-  // `drift_rad` about its y axis against the calibration.
-  [[nodiscard]] StereoShot ShootApart(std::uint64_t sequence, double lag_s, double drift_rad) const;
+  [[nodiscard]] StereoShot Shoot(std::uint64_t sequence, const ShotChange& change = {}) const;
 
   [[nodiscard]] const StereoCalibration& calibration() const { return scenario_->rig.calibration; }
   [[nodiscard]] const Scenario& scenario() const { return *scenario_; }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sim/edge_truth.h"
 #include "sim/random.h"
 
 namespace wirepose::sim {
@@ -43,14 +44,19 @@ StereoShot ShootStereo(const Renderer& renderer, const StereoRig& left_rig, cons
   right.seed = Mix(options.seed, 2);
   const Camera left_camera = LeftCamera(left_rig);
   const RadianceImage left_light = renderer.Render(left_camera, left);
-  const RadianceImage right_light = renderer.Render(RightCamera(right_rig), right);
+  const Camera right_camera = RightCamera(right_rig);
+  const RadianceImage right_light = renderer.Render(right_camera, right);
   // The target is a grey level, the exposure acts before the gamma curve.
   const float target = std::pow(left_rig.exposure_target, left_rig.left_sensor.gamma);
-  const float exposure = AutoExposure(left_light, target);
+  const float exposure = left_rig.light * AutoExposure(left_light, target);
   StereoShot shot;
   shot.left = Expose(left_light, exposure, left_rig.left_sensor, Mix(options.seed, 3));
   shot.right = Expose(right_light, exposure, right_rig.right_sensor, Mix(options.seed, 4));
   shot.truth = FindTruth(renderer, left_camera, options.threads);
+  for (ObjectTruth& object : shot.truth.objects) {
+    object.left_edges = VisibleEdgeParts(renderer, left_camera, object.instance);
+    object.right_edges = VisibleEdgeParts(renderer, right_camera, object.instance);
+  }
   return shot;
 }
 
@@ -60,7 +66,8 @@ dataset::FrameRecord ToRecord(int im_id, const StereoRig& rig, const Truth& trut
   record.T_left_world = rig.T_world_left.Inverse();
   for (const ObjectTruth& object : truth.objects) {
     record.instances.push_back({object.obj_id, object.T_camera_object, object.px_count_all, object.px_count_in_image,
-                                object.px_count_visib, object.visib_fract, object.bbox_visib});
+                                object.px_count_visib, object.visib_fract, object.bbox_visib, object.left_edges,
+                                object.right_edges});
   }
   return record;
 }

@@ -25,6 +25,7 @@ struct StereoRig {
 
   Sensor left_sensor;
   Sensor right_sensor{.gain = 0.9F, .serial = 2};  // the eyes of real rigs differ
+  float light = 1;               // more or less light than the exposure was chosen for
   float exposure_target = 0.8F;  // grey level over 255; both eyes are exposed as the left one asks, see AutoExposure
 };
 

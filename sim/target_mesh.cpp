@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "hal/dataset/dataset.h"
+#include "sim/edge_truth.h"
 
 namespace wirepose::sim {
 namespace {
@@ -81,6 +82,15 @@ nlohmann::ordered_json ModelInfo(const Mesh& mesh) {
     info["symmetries_discrete"].push_back(matrix);
   }
   return info;
+}
+
+// [x, y, z, x, y, z] of both ends of each sharp edge, mm.
+nlohmann::ordered_json ModelEdges(const Mesh& mesh) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& [a, b] : SharpEdges(mesh)) {
+    list.push_back({1000 * a.x(), 1000 * a.y(), 1000 * a.z(), 1000 * b.x(), 1000 * b.y(), 1000 * b.z()});
+  }
+  return list;
 }
 
 bool WritePly(const fs::path& path, const TargetMesh& target) {
@@ -173,9 +183,12 @@ Result<void, std::string> WriteTargetMeshes(const fs::path& root, const std::vec
     if (!WritePly(path, target)) return failed(path);
     infos[std::to_string(target.obj_id)] = ModelInfo(target.mesh);
   }
-  const fs::path path = root / "models" / "models_info.json";
-  std::ofstream out(path, std::ios::binary);
-  if (!(out << infos.dump(1) << "\n") || !out.flush()) return failed(path);
+  nlohmann::ordered_json edges;
+  for (const TargetMesh& target : targets) edges[std::to_string(target.obj_id)] = ModelEdges(target.mesh);
+  const fs::path info_path = root / "models" / "models_info.json", edges_path = root / "models" / "model_edges.json";
+  std::ofstream info_out(info_path, std::ios::binary), edges_out(edges_path, std::ios::binary);
+  if (!(info_out << infos.dump(1) << "\n") || !info_out.flush()) return failed(info_path);
+  if (!(edges_out << edges.dump() << "\n") || !edges_out.flush()) return failed(edges_path);
   return {};
 }
 

@@ -24,7 +24,8 @@ struct TargetMesh {
 // PLY before OBJ before STL. The error is one line.
 [[nodiscard]] Result<std::vector<TargetMesh>, std::string> LoadTargetMeshes(const std::filesystem::path& folder);
 
-// Writes ROOT/models as BOP has it: obj_00000N.ply (ASCII, mm) and models_info.json with diameter,
+// Writes ROOT/models as BOP has it, and model_edges.json, which scene_edges_cam{1,2}.json refer to:
+// obj_00000N.ply (ASCII, mm) and models_info.json with diameter,
 // bounding box and the symmetries_discrete among the rotations by quarter turns about the axes of
 // the bounding box.
 [[nodiscard]] Result<void, std::string> WriteTargetMeshes(const std::filesystem::path& root,

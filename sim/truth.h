@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/dataset/dataset_writer.h"
 #include "sim/renderer.h"
 
 namespace wirepose::sim {
@@ -23,6 +24,7 @@ struct ObjectTruth {
   int px_count_visib = 0;                       // of these seen
   double visib_fract = 0;                       // px_count_visib / px_count_all
   std::array<int, 4> bbox_visib{-1, -1, 0, 0};  // x, y, width, height of what is seen
+  std::vector<dataset::EdgePart> left_edges, right_edges;  // ShootStereo fills them in: see edge_truth.h
 };
 
 struct Truth {

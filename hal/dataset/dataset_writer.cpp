@@ -1,6 +1,7 @@
 #include "hal/dataset/dataset_writer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <system_error>
 
@@ -47,6 +48,18 @@ ordered_json SceneGtInfo(const InstanceRecord& instance) {
           {"px_count_valid", instance.px_count_visib},
           {"visib_fract", instance.visib_fract},
           {"bbox_visib", instance.bbox_visib}};
+}
+
+// [edge, from, to, x0, y0, x1, y1] for each part.
+ordered_json SceneEdges(const std::vector<EdgePart>& parts) {
+  ordered_json list = ordered_json::array();
+  const auto rounded = [](double value) { return std::round(1e4 * value) / 1e4; };
+  for (const EdgePart& part : parts) {
+    ordered_json row = {part.edge, rounded(part.from), rounded(part.to)};
+    for (const double pixel : part.pixels) row.push_back(rounded(pixel));
+    list.push_back(row);
+  }
+  return list;
 }
 
 ordered_json CameraJson(const CameraIntrinsics& c, const StereoCalibration& calibration) {
@@ -113,17 +126,19 @@ Result<void, std::string> DatasetWriter::AddFrame(int scene_id, const FrameRecor
 }
 
 Result<void, std::string> DatasetWriter::FinishScene(int scene_id) {
-  ordered_json camera1, camera2, gt1, gt2, info;
+  ordered_json camera1, camera2, gt1, gt2, edges1, edges2, info;
   const Pose& T_right_left = calibration_.T_right_left;
   std::sort(records_.begin(), records_.end(), [](const auto& a, const auto& b) { return a.im_id < b.im_id; });
   for (const FrameRecord& record : records_) {
     const std::string key = std::to_string(record.im_id);
     camera1[key] = SceneCamera(calibration_.left, record.T_left_world);
     camera2[key] = SceneCamera(calibration_.right, T_right_left * record.T_left_world);
-    gt1[key] = gt2[key] = info[key] = ordered_json::array();
+    gt1[key] = gt2[key] = edges1[key] = edges2[key] = info[key] = ordered_json::array();
     for (const InstanceRecord& instance : record.instances) {
       gt1[key].push_back(SceneGt(instance, Pose{}));
       gt2[key].push_back(SceneGt(instance, T_right_left));
+      edges1[key].push_back(SceneEdges(instance.left_edges));
+      edges2[key].push_back(SceneEdges(instance.right_edges));
       info[key].push_back(SceneGtInfo(instance));
     }
   }
@@ -133,6 +148,8 @@ Result<void, std::string> DatasetWriter::FinishScene(int scene_id) {
                  [&] { return WriteJson(scene / "scene_camera_cam2.json", camera2); },
                  [&] { return WriteJson(scene / "scene_gt_cam1.json", gt1); },
                  [&] { return WriteJson(scene / "scene_gt_cam2.json", gt2); },
+                 [&] { return WriteJson(scene / "scene_edges_cam1.json", edges1); },
+                 [&] { return WriteJson(scene / "scene_edges_cam2.json", edges2); },
                  [&] { return WriteJson(scene / "scene_gt_info_cam1.json", info); });
 }
 

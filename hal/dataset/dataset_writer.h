@@ -17,6 +17,13 @@ namespace wirepose::dataset {
 // beyond.
 inline constexpr double kDepthScale = 0.1;
 
+// A part of a model edge that one eye sees.
+struct EdgePart {
+  int edge = 0;                    // index into the model's edges in models/model_edges.json
+  double from = 0, to = 1;         // along the edge: 0 its first end, 1 its second
+  std::array<double, 4> pixels{};  // x y of both ends in the raw image
+};
+
 // What BOP's scene_gt and scene_gt_info say about one object; the pixel counts as bop_toolkit
 // defines them.
 struct InstanceRecord {
@@ -27,6 +34,7 @@ struct InstanceRecord {
   int px_count_visib = 0;     // of these seen
   double visib_fract = 0;     // px_count_visib / px_count_all
   std::array<int, 4> bbox_visib{-1, -1, 0, 0};  // x, y, width, height of what is seen, px
+  std::vector<EdgePart> left_edges, right_edges;
 };
 
 struct FrameRecord {
@@ -52,7 +60,7 @@ class DatasetWriter {
   [[nodiscard]] Result<void, std::string> AddFrame(int scene_id, const FrameRecord& record, ImageView left,
                                                    ImageView right, BasicImageView<const std::uint16_t> depth);
 
-  // Writes scene_camera, scene_gt and scene_gt_info of the frames added since the last call, by
+  // Writes scene_camera, scene_gt, scene_edges and scene_gt_info of the frames added since the last call, by
   // their im_id. scene_gt_info comes last: where it is, the scene is complete.
   [[nodiscard]] Result<void, std::string> FinishScene(int scene_id);
 

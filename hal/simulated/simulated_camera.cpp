@@ -13,8 +13,12 @@
 
 #include "hal/buffer_ring.h"
 #include "hal/dataset/calibration_file.h"
+#include "hal/simulated/feed_faults.h"
+#include "hal/simulated/frame_cache.h"
+#include "sim/random.h"
 #include "sim/scenario_file.h"
 #include "sim/scenario_video.h"
+#include "sim/suite.h"
 
 namespace wirepose::hal {
 namespace {
@@ -66,8 +70,9 @@ Result<sim::ScenarioSpec, std::string> SpecOf(const SimulatedConfig& config) {
 // Renders ahead. Lives from Open to Close; its thread from Start to Stop.
 class SimulatedCamera::Worker {
  public:
-  Worker(const SimulatedConfig& config, const sim::ScenarioSpec& spec, sim::ScenarioVideo video)
-      : config_(config), rate_hz_(spec.rate_hz), video_(std::move(video)) {
+  Worker(const SimulatedConfig& config, const sim::ScenarioSpec& spec, sim::ScenarioVideo video,
+         std::optional<FrameCache> cache)
+      : config_(config), spec_(spec), video_(std::move(video)), cache_(std::move(cache)) {
     ring_.Allocate(video_.calibration().width, video_.calibration().height);
   }
   Worker(const Worker&) = delete;
@@ -78,6 +83,7 @@ class SimulatedCamera::Worker {
     {
       const std::lock_guard lock(mutex_);
       truths_.clear();
+      last_ = {};
       is_stopping_ = is_over_ = has_failed_ = false;
     }
     if (!config_.truth_path.empty()) {
@@ -97,7 +103,9 @@ class SimulatedCamera::Worker {
     changed_.notify_all();
     if (thread_.joinable()) thread_.join();
     const std::lock_guard lock(mutex_);
-    for (const Captured& captured : ready_) ring_.Return(captured.buffer);
+    for (const Event& event : ready_) {
+      if (event.captured) ring_.Return(event.captured->buffer);
+    }
     ready_.clear();
     truth_file_.close();
   }
@@ -109,10 +117,14 @@ class SimulatedCamera::Worker {
     const auto can_answer = [&] { return !ready_.empty() || is_over_ || has_failed_ || leased_ == kBuffers; };
     if (!changed_.wait_for(lock, timeout, can_answer)) return unexpected(CameraError::kTimeout);
     if (!ready_.empty()) {
-      const Captured captured = ready_.front();
+      const Event event = ready_.front();
       ready_.pop_front();
+      if (!event.captured) {
+        changed_.notify_all();  // there is room for another event
+        return unexpected(CameraError::kDisconnected);
+      }
       ++leased_;
-      return captured;
+      return *event.captured;
     }
     if (has_failed_) return unexpected(CameraError::kBadData);
     return unexpected(is_over_ ? CameraError::kEndOfStream : CameraError::kNoBuffer);
@@ -127,6 +139,12 @@ class SimulatedCamera::Worker {
     changed_.notify_all();
   }
 
+  // Why it has failed; after Acquire gave kBadData.
+  [[nodiscard]] std::string reason() const {
+    const std::lock_guard lock(mutex_);
+    return reason_;
+  }
+
   [[nodiscard]] std::optional<SimulatedTruth> Truth(std::uint64_t sequence) const {
     const std::lock_guard lock(mutex_);
     for (const SimulatedTruth& truth : truths_) {
@@ -137,10 +155,17 @@ class SimulatedCamera::Worker {
 
  private:
   void Run() {
+    start_ = std::chrono::steady_clock::now();
     for (std::uint64_t i = 0; config_.frame_count == 0 || i < config_.frame_count; ++i) {
+      const FramePlan plan = PlanFrame(spec_.feed, i, spec_.seed);
+      if (plan.is_dropped) continue;
+      if (plan.is_disconnected) {
+        if (!ReportDisconnected()) return;
+        continue;
+      }
       const std::optional<std::uint32_t> buffer = WaitForBuffer();
       if (!buffer) return;
-      if (!RenderInto(*buffer, i)) {
+      if (!FillBuffer(*buffer, i, plan)) {
         ring_.Return(*buffer);
         return;
       }
@@ -162,51 +187,111 @@ class SimulatedCamera::Worker {
     return buffer;
   }
 
-  // False when the truth file could not be written.
-  bool RenderInto(std::uint32_t buffer, std::uint64_t sequence) {
-    const sim::StereoShot shot = video_.Shoot(sequence);
-    CopyImage(shot.left, ring_.left(buffer));
-    CopyImage(shot.right, ring_.right(buffer));
+  // One AcquireFrame will say so. Waits until there is somebody to hear it: false when the stream is
+  // to stop.
+  bool ReportDisconnected() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return is_stopping_ || ready_.size() < kBuffers; });
+    if (is_stopping_) return false;
+    ready_.push_back({std::nullopt});
+    changed_.notify_all();
+    return true;
+  }
+
+  // From the cache, or rendered.
+  Result<CachedFrame, std::string> Make(std::uint64_t sequence, const sim::ShotChange& change) {
+    const bool may_keep = cache_.has_value() && change == sim::ShotChange{};
+    if (may_keep) {
+      if (std::optional<CachedFrame> kept = cache_->Load(sequence)) return *std::move(kept);
+    }
+    sim::StereoShot shot = video_.Shoot(sequence, change);
+    CachedFrame frame{{std::move(shot.left), std::move(shot.right)}, {}};
+    for (const sim::ObjectTruth& object : shot.truth.objects) {
+      frame.objects.push_back({object.obj_id, object.name, object.T_camera_object, object.visib_fract});
+    }
+    if (may_keep) {
+      if (const Result<void, std::string> stored = cache_->Store(sequence, frame); !stored) return unexpected(stored.error());
+    }
+    return frame;
+  }
+
+  // False when a file could not be written.
+  bool FillBuffer(std::uint32_t buffer, std::uint64_t sequence, const FramePlan& plan) {
+    if (!plan.repeats_last || last_.images.left.pixels.empty()) {
+      Result<CachedFrame, std::string> made = Make(sequence, plan.change);
+      if (!made) return Fail(made.error());
+      const StereoImages before = std::move(last_.images);
+      last_ = *std::move(made);
+      ApplyImageFaults(plan.image_faults, sim::Mix(spec_.seed, sequence), before, last_.images);
+    }
+    CopyImage(last_.images.left, ring_.left(buffer));
+    CopyImage(last_.images.right, ring_.right(buffer));
+    const std::chrono::nanoseconds since_start(std::llround(static_cast<double>(sequence) * 1e9 / spec_.rate_hz));
     Captured captured;
     captured.buffer = buffer;
     captured.frame.sequence = sequence;
-    captured.frame.capture_time = CaptureTime(
-        std::chrono::nanoseconds(std::llround(static_cast<double>(sequence) * 1e9 / rate_hz_)));
+    captured.frame.capture_time = CaptureTime(since_start + plan.stamp_shift);
+    captured.frame.right_minus_left = std::chrono::nanoseconds(std::llround(1e9 * plan.change.right_lag_s));
     captured.frame.left = ring_.left(buffer);
     captured.frame.right = ring_.right(buffer);
+    if (std::abs(plan.change.right_lag_s) >= kMaxLagS) captured.frame.status = FrameStatus::kNotSynchronous;
 
-    SimulatedTruth truth{sequence, captured.frame.capture_time, {}};
-    for (const sim::ObjectTruth& object : shot.truth.objects) {
-      truth.objects.push_back({object.obj_id, object.name, object.T_camera_object, object.visib_fract});
+    const SimulatedTruth truth{sequence, captured.frame.capture_time, last_.objects};
+    if (truth_file_.is_open() && !(truth_file_ << ToJsonLine(truth)).flush()) {
+      return Fail(config_.truth_path.string() + ": truth cannot be written; is the disk full?");
     }
-    bool is_written = true;
-    if (truth_file_.is_open()) is_written = bool{(truth_file_ << ToJsonLine(truth)).flush()};
-    const std::lock_guard lock(mutex_);
-    has_failed_ = !is_written;
-    if (is_written) {
-      truths_.push_back(std::move(truth));
-      if (truths_.size() > kTruthsKept) truths_.pop_front();
-      ready_.push_back(captured);
-    }
-    changed_.notify_all();
-    return is_written;
+    return Publish(captured, truth, start_ + since_start);
   }
 
+  // With a cache, not before `due`: as a camera would.
+  bool Publish(const Captured& captured, const SimulatedTruth& truth, std::chrono::steady_clock::time_point due) {
+    std::unique_lock lock(mutex_);
+    if (cache_) changed_.wait_until(lock, due, [&] { return is_stopping_; });
+    truths_.push_back(truth);
+    if (truths_.size() > kTruthsKept) truths_.pop_front();
+    ready_.push_back({captured});
+    changed_.notify_all();
+    return true;
+  }
+
+  bool Fail(const std::string& reason) {
+    const std::lock_guard lock(mutex_);
+    has_failed_ = true;
+    reason_ = reason;
+    changed_.notify_all();
+    return false;
+  }
+
+  // What waits for AcquireFrame: a frame, or word that the device is gone.
+  struct Event {
+    std::optional<Captured> captured;
+  };
+
+  // An offset that a robot's motion makes visible: a pixel at 1 m, 1 m/s and f 500 px takes 2 ms.
+  static constexpr double kMaxLagS = 1e-3;
+
   const SimulatedConfig config_;
-  const double rate_hz_;
+  const sim::ScenarioSpec spec_;
   const sim::ScenarioVideo video_;
-  std::ofstream truth_file_;  // the worker thread's while it runs
+  const std::optional<FrameCache> cache_;
+
+  // The worker thread's while it runs.
+  std::ofstream truth_file_;
+  CachedFrame last_;  // as given out, faults included
+  std::chrono::steady_clock::time_point start_;
+
   std::thread thread_;
 
   mutable std::mutex mutex_;  // guards all below
   std::condition_variable changed_;
   BufferRing<kBuffers> ring_;
-  std::deque<Captured> ready_;  // rendered, not yet asked for
+  std::deque<Event> ready_;  // not yet asked for
   std::deque<SimulatedTruth> truths_;
   std::uint32_t leased_ = 0;
   bool is_stopping_ = false;
   bool is_over_ = false;     // the last frame is rendered
-  bool has_failed_ = false;  // the truth file refused a line
+  bool has_failed_ = false;  // a file could not be written
+  std::string reason_;       // why it has failed
 };
 
 SimulatedCamera::SimulatedCamera(SimulatedConfig config) : config_(std::move(config)) {}
@@ -238,7 +323,11 @@ CameraError SimulatedCamera::DoOpen(StereoCalibration& calibration) {
     return CameraError::kUnsupported;
   }
   calibration = video->calibration();
-  worker_ = std::make_unique<Worker>(config_, *spec, *std::move(video));
+  std::optional<FrameCache> cache;
+  if (!config_.cache_path.empty()) {
+    cache.emplace(config_.cache_path / (sim::ContentHash(*spec, *targets) + "_" + std::to_string(config_.scene)));
+  }
+  worker_ = std::make_unique<Worker>(config_, *spec, *std::move(video), std::move(cache));
   detail_.clear();
   return CameraError::kOk;
 }
@@ -253,10 +342,19 @@ CameraError SimulatedCamera::DoStart() {
 Result<StereoCamera::Captured, CameraError> SimulatedCamera::DoAcquire(std::chrono::nanoseconds timeout) {
   detail_.clear();
   Result<Captured, CameraError> captured = worker_->Acquire(timeout);
-  if (captured) return captured;
+  if (captured) {
+    if (captured->frame.status == FrameStatus::kNotSynchronous) {
+      detail_ = "simulated: the right eye was exposed " +
+                std::to_string(captured->frame.right_minus_left.count() / 1000) + " us after the left one";
+    }
+    return captured;
+  }
   switch (captured.error()) {
     case CameraError::kBadData:
-      detail_ = config_.truth_path.string() + ": truth cannot be written; is the disk full?";
+      detail_ = worker_->reason();
+      break;
+    case CameraError::kDisconnected:
+      detail_ = "simulated: the camera is disconnected, as the scenario says; it comes back";
       break;
     case CameraError::kTimeout:
       detail_ = "simulated: the next frame is still being rendered";

@@ -23,6 +23,8 @@ struct SimulatedConfig {
   std::optional<std::uint64_t> seed;
   std::optional<double> frame_rate_hz;   // of the capture stamps and of the camera's motion, 1..1000
   std::optional<int> samples_per_pixel;  // 4, 9, 16, 25 or 36
+  // Folder for rendered frames; when set, frames that are in it are not rendered again, and none
+  // comes before its time. Empty: frames come as fast as they are rendered.
   std::filesystem::path cache_path;
   // calib.yaml of the rig to simulate, see hal/dataset/calibration_file.h; empty: the scenario's.
   std::filesystem::path calibration_path;
@@ -45,15 +47,16 @@ struct SimulatedTruth {
   std::vector<SimulatedObject> objects;
 };
 
-// A camera that moves slowly through sim/'s kitchen. A thread of its own renders ahead into four
-// buffers, allocated by Open; frames come as fast as they are rendered and none is dropped. Capture
-// times are sequence / frame_rate_hz. The same configuration gives the same frames, stamps and
-// bytes each time; Start begins at the first frame.
+// A camera that moves through one of sim/'s scenes. A thread of its own renders ahead into four
+// buffers, allocated by Open. Capture times are sequence / frame rate; the same configuration gives
+// the same frames, stamps and bytes each time; Start begins at the first frame. Nothing is lost
+// unless the scenario says so: its faults (sim/scenario_spec.h) happen here.
 //
-// Open: kNotFound (no mesh folder), kBadData (no usable mesh, malformed calibration), kUnsupported
-// (configuration, or no mesh is small enough). Start: kBadData (truth file not writable).
-// AcquireFrame: kTimeout (still rendering), kNoBuffer, kEndOfStream, kBadData (the truth file
-// refused a line). Stop waits for the frame in the making, about a second.
+// Open: kNotFound (no mesh folder), kBadData (no usable mesh, malformed scenario or calibration),
+// kUnsupported (configuration, or no mesh is small enough). Start: kBadData (truth file not
+// writable). AcquireFrame: kTimeout (still rendering), kNoBuffer, kEndOfStream, kDisconnected (once
+// for each frame that the scenario's `disconnect` swallows), kBadData (truth file or cache cannot be
+// written). Stop waits for the frame in the making, some seconds.
 class SimulatedCamera final : public StereoCamera {
  public:
   static constexpr std::uint32_t kBuffers = 4;

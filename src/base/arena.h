@@ -57,6 +57,14 @@ class Arena {
     return {first, count};
   }
 
+  // One default-initialised T: arrays in it have indeterminate content. nullptr when it does not fit.
+  template <typename T>
+  [[nodiscard]] T* Create() {
+    static_assert(std::is_trivially_destructible_v<T>, "the arena never calls a destructor");
+    void* const place = Allocate(sizeof(T), alignof(T));
+    return place != nullptr ? ::new (place) T : nullptr;
+  }
+
   [[nodiscard]] std::size_t capacity() const { return storage_.size(); }
   [[nodiscard]] std::size_t used() const { return used_; }              // padding included
   [[nodiscard]] std::size_t high_water() const { return high_water_; }  // largest used() ever

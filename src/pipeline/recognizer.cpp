@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/arena.h"
+
 namespace wirepose {
 namespace {
 
@@ -116,27 +118,32 @@ void Recognizer::KeepSegmentsInRegion() {
   items.resize(kept);
 }
 
+void Recognizer::FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
+                           Segments& segments) {
+  Arena arena(stage_scratch_);
+  EdgeImage& edges = *arena.Create<EdgeImage>();
+  SmoothImage(View(image), smooth);
+  FindRidges(smooth, camera().width, camera().height, map, params_.edges, edges);
+  BuildEdgeMap(edges, edge_map);
+  FindSegments(params_.segments, edges, segment_scratch_, segments);
+}
+
 void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics) {
   const int width = camera().width, height = camera().height;
   RectifyImage(left, rectification_.left, {left_rectified_.data(), width, height, kMaxImageWidth});
   RectifyImage(right, rectification_.right, {right_rectified_.data(), width, height, kMaxImageWidth});
   timer.Done(Stage::kRectify);
 
-  const auto find = [&](const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
-                        Segments& segments) {
-    SmoothImage(View(image), smooth);
-    FindRidges(smooth, width, height, map, params_.edges, edges_);
-    BuildEdgeMap(edges_, edge_map);
-    FindSegments(params_.segments, edges_, segment_scratch_, segments);
-  };
-  find(right_rectified_, rectification_.right, right_smooth_, right_edges_, right_segments_);
-  find(left_rectified_, rectification_.left, left_smooth_, left_edges_, left_segments_);
+  FindEdges(right_rectified_, rectification_.right, right_smooth_, right_edges_, right_segments_);
+  FindEdges(left_rectified_, rectification_.left, left_smooth_, left_edges_, left_segments_);
   if (!region_.Whole()) KeepSegmentsInRegion();
   timer.Done(Stage::kSegments);
 
   NormalizeLocally(View(left_rectified_), left_normalized_);
   NormalizeLocally(View(right_rectified_), right_normalized_);
-  ComputeDisparityMap(params_.disparity, width, height, left_normalized_, right_normalized_, disparity_scratch_, disparity_);
+  Arena arena(stage_scratch_);
+  ComputeDisparityMap(params_.disparity, width, height, left_normalized_, right_normalized_, *arena.Create<DisparityScratch>(),
+                      disparity_);
   MatchLines(params_.stereo, {camera(), left_normalized_, right_normalized_, right_smooth_, rectification_.right},
              left_segments_, stereo_scratch_, lines_);
   timer.Done(Stage::kStereoLines);

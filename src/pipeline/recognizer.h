@@ -2,6 +2,9 @@
 #ifndef WIREPOSE_PIPELINE_RECOGNIZER_H_
 #define WIREPOSE_PIPELINE_RECOGNIZER_H_
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -148,6 +151,7 @@ class Recognizer {
   void KeepSegmentsInRegion();
   void FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics);
   void MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result);
+  void FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map, Segments& segments);
   void Polish(Candidate& candidate);
   void Report(RecognitionResult& result);
 
@@ -164,7 +168,6 @@ class Recognizer {
   ImagePlane left_rectified_, right_rectified_;
   SmoothPlane left_smooth_, right_smooth_;
   NormalizedPlane left_normalized_, right_normalized_;
-  EdgeImage edges_;  // of one eye at a time
   EdgeMap left_edges_, right_edges_;
   Segments left_segments_, right_segments_;
   DisparityMap disparity_;
@@ -180,7 +183,9 @@ class Recognizer {
 
   SegmentScratch segment_scratch_;
   StereoScratch stereo_scratch_;
-  DisparityScratch disparity_scratch_;
+  // Of the stage at work: an eye's edge image, then the rows of the disparity map.
+  alignas(EdgeImage) alignas(DisparityScratch)
+      std::array<std::byte, std::max(sizeof(EdgeImage), sizeof(DisparityScratch))> stage_scratch_;
   RefineScratch refine_scratch_;
   VerifyScratch verify_scratch_;
   ClaimMap claims_;

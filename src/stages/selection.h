@@ -13,17 +13,17 @@ namespace wirepose {
 // tools/evaluation/fit_score.py, never to recorded test data; log_length is given, not fitted: evidence of equal density
 // counts more the longer it is (as in a-contrario detection), which scenes with few sizes of objects cannot teach.
 struct ScoreParams {
-  float bias = -13.99F;
-  float edge_density = 0.46F;   // per log-likelihood unit and 100 px of visible edge
+  float bias = -10.14F;
+  float edge_density = 0.33F;   // per log-likelihood unit and 100 px of visible edge
   float log_length = 1.0F;      // per natural logarithm of visible edge length over 300 px
-  float contrast = 1.44F;       // per unit of contrast with the surroundings
-  float distinct = 2.22F;       // per unit of distinctness of the averaged edges
-  float overrun = -1.99F;       // per unit of overrun share
-  float inside = 2.33F;         // per share of the visible edges that lies in the image
-  float faces = 0.09F;          // per unit of face evidence
-  float on = 2.87F;             // per share of the surface that the scene's surface is
-  float through = -2.63F;       // per share of it that one sees through
-  float drop = 3.43F;           // per share of the outline behind which the scene falls back
+  float contrast = 1.22F;       // per unit of contrast with the surroundings
+  float distinct = 1.72F;       // per unit of distinctness of the averaged edges
+  float overrun = -3.55F;       // per unit of overrun share
+  float inside = 2.10F;         // per share of the visible edges that lies in the image
+  float faces = 0.08F;          // per unit of face evidence
+  float on = 1.80F;             // per share of the surface that the scene's surface is
+  float through = -1.74F;       // per share of it that one sees through
+  float drop = 2.05F;           // per share of the outline behind which the scene falls back
 };
 
 struct SelectParams {

@@ -1,5 +1,6 @@
 // Prints what the recognizer's memory is made of, as the table of docs/memory.md. Ends with status 1 when it exceeds
 // the budget or when the table does not name nearly all of it. Run by scripts/memory-doc and as a test.
+#include <algorithm>
 #include <cstdio>
 
 #include "pipeline/recognizer.h"
@@ -25,10 +26,11 @@ constexpr Member kMembers[] = {
     {"rectified images", kMaxPixels, 2, "kMaxPixels", "both eyes"},
     {"smoothed images", sizeof(SmoothPlane), 2, "kMaxPixels x 16 bit", "edges, sub-pixel profiles"},
     {"normalized images", sizeof(NormalizedPlane), 2, "kMaxPixels", "stereo, face evidence"},
-    {"edge image", sizeof(EdgeImage), 1, "kMaxPixels, kMaxRidgePixels", "gradients and ridges of one eye at a time"},
+    {"stage scratch", std::max(sizeof(EdgeImage), sizeof(DisparityScratch)), 1, "kMaxPixels, kMaxRidgePixels",
+     "gradients and ridges of one eye at a time, then the rows of the disparity map"},
+    {"disparity map", sizeof(DisparityMap), 1, "kMaxPixels / 4", "surfaces between the lines"},
     {"edge maps", sizeof(EdgeMap), 2, "kMaxPixels x 16 directions", "one look-up a sample when poses are scored"},
     {"2D segments", sizeof(Segments), 2, "kMaxSegments", "real kitchens show 150 to 300; the longest are kept"},
-    {"disparity map", sizeof(DisparityMap), 1, "src/stages/disparity_map.h", "surfaces that have no lines"},
     {"3D lines", sizeof(Lines3), 1, "kMaxSegments", "one a left segment"},
     {"image line sets", sizeof(ImageLineSets), 1, "kMaxImageLinePairs, twice", "collected by quality, then grouped by base line"},
     {"corresponding pairs", sizeof(CorrespondingPairs), 1, "kMaxCorrespondences", "of one model at a time"},
@@ -37,7 +39,6 @@ constexpr Member kMembers[] = {
     {"candidates", sizeof(Candidates), 1, "kMaxVerified", "of all models"},
     {"segment scratch", sizeof(SegmentScratch), 1, "kMaxChain", "one connected edge"},
     {"stereo scratch", sizeof(StereoScratch), 1, "kMaxStereoRows x kMaxDisparity", "costs of one line"},
-    {"disparity scratch", sizeof(DisparityScratch), 1, "src/stages/disparity_map.h", "costs while the map is made"},
     {"refinement scratch", sizeof(RefineScratch), 1, "kMaxEdgeSamples, kMaxModelTriangles", "one pose"},
     {"verification scratch", sizeof(VerifyScratch), 1, "kMaxEdgeSamples, kMaxModelTriangles", "one pose"},
     {"claim map", sizeof(ClaimMap), 1, "4 x 4 px blocks", "which detection owns an image edge"},

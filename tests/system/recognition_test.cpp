@@ -76,7 +76,7 @@ class RecognitionTest : public RobotTest {
     RobotTest::SetUp();
     const std::filesystem::path meshes = std::filesystem::path(WIREPOSE_MESH).parent_path();
     Run({WIREPOSE_PROGRAM, "sim", "render", "--out", (folder_ / "data").string(), "--models", meshes.string(),
-         "--frames", std::to_string(kFrames), "--rate", "3", "--samples", "9", "--seed", "5"});
+         "--scenario", WIREPOSE_SCENARIO, "--frames", std::to_string(kFrames), "--rate", "3", "--samples", "9"});
     const std::map<std::string, int> others = {{"book", 2}, {"juice_dispenser", kDispenser}};
     for (const auto& [name, id] : others) {
       Run({WIREPOSE_PROGRAM, "model", "build", (meshes / (name + ".ply")).string(), "--id", std::to_string(id), "--out",

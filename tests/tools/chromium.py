@@ -122,7 +122,7 @@ class Page:
 
     def load(self, url):
         self.call("Page.navigate", {"url": url})
-        self.wait_for("document.readyState === 'complete'")
+        self.wait_for("location.href !== 'about:blank' && document.readyState === 'complete'")
 
     def evaluate(self, expression):
         """Value of a JavaScript expression; a promise is awaited."""

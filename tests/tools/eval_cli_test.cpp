@@ -212,6 +212,7 @@ const BadInput kBadInputs[] = {
     {"NoDataset", Nothing, "eval nowhere --out r.csv", 1, "nowhere"},
     {"OutInNoFolder", Nothing, "eval set --out no/where/r.csv", 2, "no/where/r.csv"},
     {"JsonInNoFolder", Nothing, kEval + " --json no/where/m.json", 2, "no/where/m.json"},
+    {"ReportInNoFolder", Nothing, kEval + " --report no/where/r.html", 2, "no/where/r.html"},
     {"NegativeLimit", Nothing, kEval + " --limit -1", 2, "--limit"},
     {"CalibrationMissing", Remove("calib.yaml"), kEval, 1, "calib.yaml"},
     {"CalibrationEmpty", Put("calib.yaml", ""), kEval, 1, "calib.yaml"},

@@ -22,8 +22,8 @@ std::string TextOf(const std::filesystem::path& file);
 
 // Writes FOLDER/set with the golden frames and FOLDER/models with their models, the book under kHostileName. Truth is
 // made of what the recognizer reports there: of every three detections one is a true instance, one lies beside a true
-// instance (a miss and a false alarm), one is a false alarm. Frame 0 also has a refrigerator, for which there is no
-// model. Fails the test when something cannot be made.
+// instance (a miss and a false alarm), one is a false alarm. Frame 0 also has a refrigerator at 3 m, for which there
+// is no model. Fails the test when something cannot be made.
 void WriteReportDataset(const std::filesystem::path& folder);
 
 }  // namespace wirepose::evaluation::testing

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Opens a report in headless Chromium and uses it as a person would. Usage: report_page_test.py PAGE [PICTURE_FOLDER]
+"""Checks a report's markup, then opens it in headless Chromium and uses it as a person would.
+Usage: report_page_test.py PAGE [PICTURE_FOLDER]
 
 Exit status 0: all holds; 1: an assertion failed; 77: there is no Chromium here (Debian's package is chromium).
 """
@@ -7,7 +8,9 @@ import json
 import os
 import re
 import sys
+from html.parser import HTMLParser
 
+sys.dont_write_bytecode = True  # nothing beside the sources
 from chromium import Page, find_chromium
 
 HOSTILE = "</script><img src=x onerror=1>"
@@ -16,6 +19,29 @@ HOSTILE = "</script><img src=x onerror=1>"
 def data_of(file):
     text = open(file, encoding="utf-8").read()
     return json.loads(re.search(r'id="data">(.*?)</script>', text, re.S).group(1))
+
+
+class Markup(HTMLParser):
+    """Every element is closed in its order and every id stands once."""
+    VOID = {"meta", "link", "input", "br", "img", "hr"}
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.ids = [], set()
+        self.feed(text)
+        self.close()
+        assert not self.open, f"never closed: {self.open}"
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in self.VOID:
+            self.open.append(tag)
+        for name, value in attrs:
+            assert name != "id" or value not in self.ids, f"id {value} stands twice"
+            if name == "id":
+                self.ids.add(value)
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open.pop() == tag, f"</{tag}> out of place at {self.getpos()}"
 
 
 def is_miss(instance):
@@ -90,6 +116,12 @@ def check_keys(page, data):
     page.press("4")
     assert before != "none" == page.evaluate(display), "key 4 switches the truth"
     page.press("4")
+    image = "document.querySelector('#viewer-picture image').getAttribute('href')"
+    page.wait_for("document.querySelector('#viewer-picture image') !== null")
+    left = page.evaluate(image)
+    page.press("r")
+    page.wait_for("document.querySelector('#viewer-picture image') !== null")
+    assert page.evaluate(image) != left, "key R shows the right image"
     page.press("Escape", 27)
     page.wait_for(f"{active} === '{ids[1]}'")  # the card last looked at has the focus again
     assert not page.evaluate("document.getElementById('viewer').open")
@@ -117,12 +149,15 @@ def check_appearance(page):
 
 
 def main():
+    file = os.path.abspath(sys.argv[1])
+    data = data_of(file)
+    text = open(file, encoding="utf-8").read()
+    assert text.lower().startswith("<!doctype html>")
+    assert {"data", "misses", "alarms", "frames", "viewer"} <= Markup(text).ids
     program = find_chromium()
     if program is None:
         print("skipped: no Chromium is installed; apt-get install chromium to run this")
         return 77
-    file = os.path.abspath(sys.argv[1])
-    data = data_of(file)
     with Page(program) as page:
         page.load("file://" + file)
         check_content(page, data)

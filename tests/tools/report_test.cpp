@@ -174,13 +174,26 @@ TEST_F(ReportTest, HoldsEveryFalseAlarmWithItsCause) {
 TEST_F(ReportTest, HoldsPicturesLinesAndCurves) {
   ASSERT_EQ(data_.at("frames").size(), 3U);
   for (const Json& frame : data_.at("frames")) {
-    EXPECT_THAT(frame.at("picture").get<std::string>(), ::testing::StartsWith("data:image/jpeg;base64,/9j/"));
-    EXPECT_GT(frame.at("segments").size(), 4U * 50);
-    EXPECT_EQ(frame.at("lines").size() % 5, 0U);
+    for (const char* eye : {"left", "right"}) {
+      EXPECT_THAT(frame.at("pictures").at(eye).get<std::string>(),
+                  ::testing::StartsWith("data:image/jpeg;base64,/9j/"));
+      EXPECT_GT(frame.at("segments").at(eye).size(), 4U * 50);
+    }
+    EXPECT_GT(frame.at("lines").size(), 6U * 20);
+    EXPECT_EQ(frame.at("lines").size() % 6, 0U);
   }
   EXPECT_FALSE(data_.at("measures").at("score_curve").empty());
   EXPECT_TRUE(data_.at("measures").at("calibration").at("expected_error").is_number());
   EXPECT_LT(page_.size(), 3U * 600'000) << "16 frames must stay below 10 MB";
+}
+
+// Lowering the threshold only adds: what was reported stays as it was.
+TEST_F(ReportTest, ContinuesTheCurveBelowWhatWasReported) {
+  const Json& curve = data_.at("measures").at("score_curve");
+  const Json& continued = data_.at("measures").at("continued_curve");
+  ASSERT_GT(continued.size(), curve.size()) << "the frames have candidates that were not reported";
+  for (const Json& point : curve) EXPECT_THAT(continued, ::testing::Contains(point));
+  EXPECT_GE(continued.back().at("recall"), curve.back().at("recall"));
 }
 
 TEST_F(ReportTest, RefusesAFileThatCannotBeWritten) {
@@ -188,6 +201,22 @@ TEST_F(ReportTest, RefusesAFileThatCannotBeWritten) {
       RunIn(folder_->path(), fmt::format("'{}' eval set --out r2.csv --report no/where.html", WIREPOSE_PROGRAM));
   EXPECT_EQ(run.status, 2);
   EXPECT_THAT(run.err, HasSubstr("no/where.html"));
+}
+
+TEST_F(ReportTest, ScriptJudgesASuite) {
+  fs::create_directory(folder_->path() / "suite");
+  fs::create_directory_symlink(folder_->path() / "set", folder_->path() / "suite/recorded");
+  const auto run = RunIn(
+      folder_->path(), fmt::format("python3 '{}' --bin '{}' --suite suite --data nowhere --out ev --no-peer --no-docs",
+                                   WIREPOSE_EVALUATE, fs::path(WIREPOSE_PROGRAM).parent_path().string()));
+  ASSERT_EQ(run.status, 0) << run.out << run.err;
+  // The refrigerator stands beyond the range that the suite's targets speak of.
+  const Json& total = measures_.at("total");
+  EXPECT_THAT(run.out, ::testing::ContainsRegex(fmt::format("simulated suite +recall .*\\({} of {}\\)",
+                                                            total.at("true_positives").get<int>(),
+                                                            total.at("instances").get<int>() - 1)));
+  EXPECT_THAT(run.out, ::testing::ContainsRegex("kitchen-sample +recall .*no data here"));
+  EXPECT_TRUE(fs::exists(folder_->path() / "ev/suite-recorded.html"));
 }
 
 TEST_F(ReportTest, WorksInABrowser) {

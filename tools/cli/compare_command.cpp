@@ -175,6 +175,7 @@ void AddCompareCommand(CLI::App& app) {
   compare->add_option("--overlay", arguments->overlay, "Picture (PNG) of the received poses on the best frame");
   hal::SimulatedConfig& camera = arguments->camera;
   compare->add_option("--meshes", camera.mesh_dir, "For --overlay: the camera's mesh folder");
+  compare->add_option("--scenario", camera.scenario_path, "For --overlay: the camera's scenario file");
   compare->add_option("--seed", camera.seed, "For --overlay: the camera's seed");
   compare->add_option("--frame-rate", camera.frame_rate_hz, "For --overlay: the camera's frame rate, Hz");
   compare->add_option("--samples", camera.samples_per_pixel, "For --overlay: the camera's samples per pixel");

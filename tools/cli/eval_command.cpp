@@ -70,42 +70,47 @@ void WriteJson(const fs::path& file, const evaluation::Evaluation& evaluation) {
   if (!out) throw WorkFailed(file.string() + ": cannot be written; check the free space");
 }
 
-void RunEval(const EvalArguments& arguments) {
-  CheckWritable(arguments.out);
-  if (!arguments.json.empty()) CheckWritable(arguments.json);
-  std::unique_ptr<evaluation::CandidateLog> log;
-  if (!arguments.candidates.empty()) {
-    CheckWritable(arguments.candidates);
-    log = std::make_unique<evaluation::CandidateLog>(arguments.candidates);
-  }
+// What is written frame by frame; null where the command line did not ask for it.
+struct FrameWriters {
+  std::unique_ptr<evaluation::CandidateLog> candidates;
   std::unique_ptr<evaluation::TraceLog> trace;
-  if (!arguments.trace.empty()) {
-    CheckWritable(arguments.trace);
-    trace = std::make_unique<evaluation::TraceLog>(arguments.trace);
-  }
-  evaluation::EvaluationOptions options = arguments.options;
-  options.trace = !arguments.trace.empty() || !arguments.report.empty();
   std::unique_ptr<evaluation::Report> report;
-  if (!arguments.report.empty()) {
-    CheckWritable(arguments.report);
-    report = std::make_unique<evaluation::Report>(options);
+};
+
+FrameWriters OpenWriters(const EvalArguments& arguments) {
+  for (const fs::path& file :
+       {arguments.out, arguments.json, arguments.candidates, arguments.trace, arguments.report}) {
+    if (!file.empty()) CheckWritable(file);
   }
+  FrameWriters writers;
+  if (!arguments.candidates.empty()) {
+    writers.candidates = std::make_unique<evaluation::CandidateLog>(arguments.candidates);
+  }
+  if (!arguments.trace.empty()) writers.trace = std::make_unique<evaluation::TraceLog>(arguments.trace);
+  if (!arguments.report.empty()) writers.report = std::make_unique<evaluation::Report>(arguments.options);
+  return writers;
+}
+
+void OrFail(const Result<void, std::string>& result) {
+  if (!result) throw WorkFailed(result.error());
+}
+
+void RunEval(const EvalArguments& arguments) {
+  const FrameWriters writers = OpenWriters(arguments);
   const auto observer = [&](const evaluation::FrameView& view) -> Result<void, std::string> {
     ShowProgress(view);
     if (!arguments.overlay.empty()) DrawFrame(view, arguments);
-    if (log) log->Add(view);
-    if (trace) trace->Add(view);
-    return report ? report->Add(view) : Result<void, std::string>();
+    if (writers.candidates) writers.candidates->Add(view);
+    if (writers.trace) writers.trace->Add(view);
+    return writers.report ? writers.report->Add(view) : Result<void, std::string>();
   };
+  evaluation::EvaluationOptions options = arguments.options;
+  options.trace = writers.trace || writers.report;
   const auto evaluation = evaluation::Evaluate(options, observer);
   if (!evaluation) throw WorkFailed(evaluation.error());
-  const auto written = evaluation::WriteResults(arguments.out, evaluation->estimates);
-  if (!written) throw WorkFailed(written.error());
+  OrFail(evaluation::WriteResults(arguments.out, evaluation->estimates));
   if (!arguments.json.empty()) WriteJson(arguments.json, *evaluation);
-  if (report) {
-    const auto made = report->Write(*evaluation, arguments.report);
-    if (!made) throw WorkFailed(made.error());
-  }
+  if (writers.report) OrFail(writers.report->Write(*evaluation, arguments.report));
   std::fputs(evaluation::Summarize(*evaluation).c_str(), stdout);
 }
 

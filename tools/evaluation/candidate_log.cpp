@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "tools/evaluation/evidence_terms.h"
 #include "tools/evaluation/vertex_error.h"
 
 namespace wirepose::evaluation {
+
 CandidateLog::CandidateLog(const std::filesystem::path& file) : out_(file) {
-  out_ << "scene_id,im_id,obj_id,error_d,visib_fract,score,edges,contrast,distinct,on,through,before,drop,level,faces,overrun,support,inside,visible_px,"
-          "supported_edges,supported_faces,rms_px,inliers\n";
+  out_ << "scene_id,im_id,obj_id,error_d,visib_fract,score";
+  for (const EvidenceTerm& term : EvidenceTerms({})) out_ << ',' << term.name;
+  out_ << '\n';
 }
 
 void CandidateLog::Add(const FrameView& view) {
@@ -22,13 +25,10 @@ void CandidateLog::Add(const FrameView& view) {
       error = here;
       visible = truth.visib_fract;
     }
-    const Evidence& e = candidate.evidence;
-    out_ << fmt::format(
-        "{},{},{},{:.4f},{:.3f},{:.4f},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.1f},"
-        "{},{},{:.4f},{}\n",
-        view.entry.scene_id, view.entry.im_id, model.view.id, error, visible, candidate.score, e.edges, e.contrast,
-        e.distinct, e.surface.on, e.surface.through, e.surface.before, e.surface.drop, e.surface.level, e.faces, e.overrun, e.support, e.inside, e.visible_px, e.supported_edges, e.supported_faces,
-        candidate.pose.rms_px, candidate.pose.inliers);
+    out_ << fmt::format("{},{},{},{:.4f},{:.3f},{:.4f}", view.entry.scene_id, view.entry.im_id, model.view.id, error,
+                        visible, candidate.score);
+    for (const EvidenceTerm& term : EvidenceTerms(candidate)) out_ << fmt::format(",{:.6g}", term.value);
+    out_ << '\n';
   }
 }
 

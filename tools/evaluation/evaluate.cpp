@@ -141,6 +141,7 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
     const Outcome seen = observer({i, set.frames.size(), set.frames[i], recognizer, models, result, trace.Finish(result)});
     if (!seen) return Error(seen.error());
   }
+  evaluation.truth = truth;
   evaluation.metrics = ComputeMetrics(truth, evaluation.estimates);
   return evaluation;
 }

@@ -38,6 +38,7 @@ struct FrameRecord {
 struct Evaluation {
   std::vector<Estimate> estimates;  // by frame, then falling score
   std::vector<FrameRecord> frames;
+  GroundTruth truth;  // of the frames judged
   Metrics metrics;
 };
 

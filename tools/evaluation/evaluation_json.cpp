@@ -75,14 +75,6 @@ Json ListsToJson(const std::vector<FrameRecord>& frames) {
   return json;
 }
 
-Json CurveToJson(const std::vector<CurvePoint>& curve) {
-  Json json = Json::array();
-  for (const CurvePoint& p : curve) {
-    json.push_back({{"threshold", p.threshold}, {"precision", p.precision}, {"recall", p.recall}});
-  }
-  return json;
-}
-
 Json FrameToJson(const FrameRecord& f) {
   Json json{{"scene_id", f.scene_id},     {"im_id", f.image_id},        {"time_s", f.times.total.wall},
             {"cpu_s", f.times.total.cpu}, {"detections", f.detections}, {"budget_hit", f.budget_hit}};
@@ -111,11 +103,19 @@ nlohmann::ordered_json ToJson(const Reliability& reliability) {
   return json;
 }
 
+nlohmann::ordered_json ToJson(const std::vector<CurvePoint>& curve) {
+  Json json = Json::array();
+  for (const CurvePoint& p : curve) {
+    json.push_back({{"threshold", p.threshold}, {"precision", p.precision}, {"recall", p.recall}});
+  }
+  return json;
+}
+
 nlohmann::ordered_json ToJson(const Evaluation& evaluation) {
   Json json = ToJson(evaluation.metrics);
   const auto counted = CountedDetections(evaluation.estimates, evaluation.metrics);
   json["calibration"] = ToJson(MeasureReliability(counted));
-  json["score_curve"] = CurveToJson(ScoreCurve(counted, evaluation.metrics.total.all.instances));
+  json["score_curve"] = ToJson(ScoreCurve(counted, evaluation.metrics.total.all.instances));
   json["stages"] = StagesToJson(evaluation.frames);
   json["lists"] = ListsToJson(evaluation.frames);
   json["budget_hits"] = std::ranges::count(evaluation.frames, true, &FrameRecord::budget_hit);

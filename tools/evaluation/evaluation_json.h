@@ -19,6 +19,7 @@ namespace wirepose::evaluation {
 nlohmann::ordered_json ToJson(const Evaluation& evaluation);
 
 nlohmann::ordered_json ToJson(const Reliability& reliability);
+nlohmann::ordered_json ToJson(const std::vector<CurvePoint>& curve);
 
 }  // namespace wirepose::evaluation
 

@@ -60,13 +60,21 @@ Json ScoreToJson(const ObjectScore& score, int frames) {
   return json;
 }
 
+// Part of the translation error across the line of sight, mm.
+double LateralError(const InstanceOutcome& o) {
+  const Vector3d error = o.estimate.t_mm - o.truth.t_mm, sight = o.truth.t_mm.normalized();
+  return (error - error.dot(sight) * sight).norm();
+}
+
 Json OutcomeToJson(const InstanceOutcome& o) {
   Json json{{"scene_id", o.scene_id}, {"im_id", o.image_id},
             {"obj_id", o.object_id},  {"visib_fract", o.visible_fraction},
             {"hit", o.hit},           {"mssd_mm", OrNull(o.best_mssd_mm)}};
+  json["range_mm"] = o.truth.t_mm.norm();
   if (!o.hit) return json;
   json["score"] = o.score;
   json["translation_mm"] = o.translation_mm;
+  json["lateral_mm"] = LateralError(o);
   json["rotation_deg"] = o.rotation_deg;
   return json;
 }

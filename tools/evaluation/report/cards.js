@@ -46,7 +46,7 @@ function ladder(instance) {
 function evidenceTable(evidence) {
   if (!evidence) return null;
   return el('dl', { class: 'evidence' }, Object.entries(evidence).map(([name, value]) =>
-    el('div', {}, el('dt', {}, name), el('dd', {}, Number.isInteger(value) ? String(value) : fixed(value, Math.abs(value) < 10 ? 2 : 1)))));
+    el('div', {}, el('dt', {}, name.replace('_', ' ')), el('dd', {}, Number.isInteger(value) ? String(value) : fixed(value, Math.abs(value) < 10 ? 2 : 1)))));
 }
 
 const badge = (cause) => el('span', { class: 'badge', style: `--hue:${hueOf(cause)}` }, cause);
@@ -121,6 +121,6 @@ function frameDetails(item) {
         (!i.counts ? 'does not count' : i.hit ? `found, score ${fixed(i.score, 2)}, ${fixed(i.translation_mm, 1)} mm, ${fixed(i.rotation_deg, 2)} deg` : `missed (${i.cause})`),
         instanceKind(i))),
       frame.detections.filter((d) => d.verdict === 'false').map((d) => row(d, `${nameOf(d.object)} reported with ${fixed(d.score, 2)}: false (${d.cause})`, 'false'))),
-    el('p', { class: 'quiet' }, `${frame.segments.length / 4} segments, ${frame.lines.length / 5} of them with depth`),
+    el('p', { class: 'quiet' }, `${frame.segments.left.length / 4} segments, ${frame.lines.length / 6} of them with depth`),
   ];
 }

@@ -61,22 +61,30 @@ function emptyChart(title, why) {
 
 const path = (points, X, Y) => points.map(([x, y], i) => `${i ? 'L' : 'M'}${X(x).toFixed(1)} ${Y(y).toFixed(1)}`).join('');
 
-function scoreCurve(curve, instances) {
+// What holds for threshold t is the point with the lowest score that is still >= t: steps.
+function steps(curve, key) {
+  const rising = [...curve].reverse(), points = [[0, rising[0][key]]];
+  rising.forEach((p, i) => points.push([p.threshold, p[key]], [p.threshold, (rising[i + 1] || p)[key]]));
+  return points;
+}
+
+// `continued`: the same with the candidates that were not reported, which a lower threshold would have let pass.
+function scoreCurve(curve, continued, instances) {
   const title = 'Precision and recall by threshold';
-  if (!curve.length || !instances) return emptyChart(title, 'No detection that counts.');
+  if (!continued.length || !instances) return emptyChart(title, 'No detection that counts.');
+  const lowest = curve.length ? curve[curve.length - 1].threshold : 1;
+  const below = continued.filter((p) => p.threshold <= lowest);
   const c = chart(title, { from: 0, to: 1, label: 'threshold on the score' }, { from: 0, to: 1, label: 'share' },
-    `${curve.length} distinct scores; below the lowest one nothing more was reported`);
-  // What holds for threshold t is the point with the lowest score that is still >= t.
-  const rising = [...curve].reverse();
-  for (const [name, key] of [['precision', 'precision'], ['recall', 'recall']]) {
-    const points = [[0, rising[0][key]]];
-    rising.forEach((p, i) => points.push([p.threshold, p[key]], [p.threshold, rising[i + 1] ? rising[i + 1][key] : p[key]]));
-    c.plot.append(svg('path', { class: 'curve ' + name, d: path(points, c.X, c.Y) }),
-      svg('text', { class: 'direct ' + name, x: c.X(0) + 6, y: c.Y(rising[0][key]) + (name === 'recall' ? 15 : -6) },
-        `${name} ${fixed(rising[0][key], 2)}`));
+    'solid: what was reported; dashed: what a lower threshold would add');
+  for (const key of ['precision', 'recall']) {
+    if (below.length) c.plot.append(svg('path', { class: `curve ${key} below`, d: path(steps(below, key), c.X, c.Y) }));
+    if (!curve.length) continue;
+    const reported = steps(curve, key).slice(1), at = reported[0];
+    c.plot.append(svg('path', { class: 'curve ' + key, d: path(reported, c.X, c.Y) }),
+      svg('text', { class: 'direct ' + key, x: c.X(at[0]) - 6, y: c.Y(at[1]) - 6, 'text-anchor': 'end' }, `${key} ${fixed(at[1], 2)}`));
   }
-  for (const p of curve) {
-    c.plot.append(svg('circle', { class: 'probe', cx: c.X(p.threshold), cy: c.Y(p.precision), r: 6 },
+  for (const p of [...below, ...curve]) {
+    c.plot.append(svg('circle', { class: 'probe', cx: c.X(p.threshold), cy: c.Y(p.recall), r: 6 },
       svg('title', {}, `threshold ${fixed(p.threshold, 3)}: precision ${fixed(p.precision, 2)}, recall ${fixed(p.recall, 2)}`)));
   }
   return c.figure;
@@ -156,7 +164,7 @@ function drawCharts(measures, instances) {
   const { errors, total } = measures, nees = total.nees || { n: 0 };
   const median = (values, unit) => [[quantile(values, 0.5), `median ${fixed(quantile(values, 0.5), 2)} ${unit}`]];
   return [
-    scoreCurve(measures.score_curve, total.instances),
+    scoreCurve(measures.score_curve, measures.continued_curve, total.instances),
     reliabilityDiagram(measures.calibration, measures.candidate_calibration),
     histogram('Translation error', errors.translation_mm, 'mm', { marks: median(errors.translation_mm, 'mm') }),
     histogram('Rotation error', errors.rotation_deg, 'deg', { marks: median(errors.rotation_deg, 'deg') }),

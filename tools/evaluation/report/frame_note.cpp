@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
+#include <span>
 
 #include <fmt/format.h>
 
+#include "tools/evaluation/evidence_terms.h"
 #include "tools/evaluation/vertex_error.h"
 #include "tools/overlay/visible_edges.h"
 
@@ -14,7 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kRightD = 0.1;  // as a hit of the metrics
+constexpr double kRightD = 0.1;      // as a hit of the metrics
+constexpr double kSamePlaceD = 0.3;  // poses of one model nearer than this are one report
 
 double Tenth(double px) { return std::round(px * 10) / 10; }
 
@@ -32,8 +35,24 @@ std::string Base64(const std::vector<unsigned char>& bytes) {
   return out;
 }
 
-void AppendSegment(const Segment2& s, Json& list) {
-  for (const float v : {s.a.x(), s.a.y(), s.b.x(), s.b.y()}) list.push_back(Tenth(static_cast<double>(v)));
+Json ToJson(std::span<const Segment2> segments) {
+  Json list = Json::array();
+  for (const Segment2& s : segments) {
+    for (const float v : {s.a.x(), s.a.y(), s.b.x(), s.b.y()}) list.push_back(Tenth(static_cast<double>(v)));
+  }
+  return list;
+}
+
+Json ToJson(std::span<const Line3> lines) {
+  Json list = Json::array();
+  for (const Line3& l : lines) {
+    if (!l.has_depth) continue;
+    const Segment2& s = l.segment;
+    for (const float v : {s.a.x(), s.a.y(), l.disparity_a_px, s.b.x(), s.b.y(), l.disparity_b_px}) {
+      list.push_back(Tenth(static_cast<double>(v)));
+    }
+  }
+  return list;
 }
 
 // Grows around points; `Cut` gives the part inside the image.
@@ -61,8 +80,7 @@ Json DrawPose(const RectifiedCamera& camera, const ModelView& model, const Pose&
     for (const Vector3d& end : {piece.a, piece.b}) {
       const Vector3d p = camera.Project(end);
       Json& list = piece.hidden ? hidden : seen;
-      list.push_back(Tenth(p.x()));
-      list.push_back(Tenth(p.y()));
+      for (int k = 0; k < 3; ++k) list.push_back(Tenth(p[k]));
       if (!piece.hidden) bounds.Add(p.x(), p.y());
     }
   }
@@ -70,18 +88,9 @@ Json DrawPose(const RectifiedCamera& camera, const ModelView& model, const Pose&
 }
 
 Json EvidenceToJson(const Candidate& candidate) {
-  const Evidence& e = candidate.evidence;
-  return {{"edges", e.edges},
-          {"contrast", e.contrast},
-          {"faces", e.faces},
-          {"overrun", e.overrun},
-          {"support", e.support},
-          {"inside", e.inside},
-          {"visible px", e.visible_px},
-          {"supported edges", e.supported_edges},
-          {"supported faces", e.supported_faces},
-          {"rms px", candidate.pose.rms_px},
-          {"inliers", candidate.pose.inliers}};
+  Json json = Json::object();
+  for (const EvidenceTerm& term : EvidenceTerms(candidate)) json[term.name] = term.value;
+  return json;
 }
 
 const PreparedModel* FindPrepared(const Recognizer& recognizer, std::uint32_t id) {
@@ -145,20 +154,10 @@ Json NoteInstance(const FrameView& view, std::size_t i) {
   return json;
 }
 
-void AddLines(const Recognizer& recognizer, Json& json) {
-  json["segments"] = Json::array();
-  for (const Segment2& s : recognizer.left_segments()) AppendSegment(s, json["segments"]);
-  json["lines"] = Json::array();
-  for (const Line3& line : recognizer.lines()) {
-    if (!line.has_depth) continue;
-    AppendSegment(line.segment, json["lines"]);
-    json["lines"].push_back(std::round(500 * static_cast<double>(line.a.z() + line.b.z())) / 1000);
-  }
-}
-
 }  // namespace
 
 std::string EncodePicture(ImageView image) {
+  if (image.data == nullptr || image.width <= 0) return {};
   cv::Mat grey(image.height, image.width, CV_8UC1);
   for (int y = 0; y < image.height; ++y) std::copy_n(image.row(y), image.width, grey.ptr(y));
   std::vector<unsigned char> bytes;
@@ -169,23 +168,52 @@ std::string EncodePicture(ImageView image) {
 Result<FrameNote, std::string> TakeNote(const FrameView& view, double min_score) {
   const Recognizer& recognizer = view.recognizer;
   FrameNote note;
-  note.json = {{"scene", view.entry.scene_id},
-               {"image", view.entry.im_id},
-               {"width", recognizer.camera().width},
-               {"height", recognizer.camera().height},
-               {"picture", EncodePicture(recognizer.left_rectified())}};
-  if (note.json["picture"] == "") {
+  note.json = {
+      {"scene", view.entry.scene_id},
+      {"image", view.entry.im_id},
+      {"width", recognizer.camera().width},
+      {"height", recognizer.camera().height},
+      {"f_baseline", recognizer.camera().f * recognizer.camera().baseline},
+      {"pictures",
+       {{"left", EncodePicture(recognizer.left_rectified())}, {"right", EncodePicture(recognizer.right_rectified())}}},
+      {"segments", {{"left", ToJson(recognizer.left_segments())}, {"right", ToJson(recognizer.right_segments())}}},
+      {"lines", ToJson(recognizer.lines())}};
+  if (note.json["pictures"]["left"] == "") {
     return unexpected<std::string>(
         fmt::format("{}: cannot be made a JPEG for the report; leave --report out", view.entry.left_path.string()));
   }
-  AddLines(recognizer, note.json);
   for (const Detection& d : view.result.detections) {
     const PreparedModel* model = FindPrepared(recognizer, d.model_id);
     if (model == nullptr || static_cast<double>(d.score) < min_score) continue;
     note.detections.push_back(NoteDetection(view, *model, d));
   }
   for (std::size_t i = 0; i < view.entry.gt.size(); ++i) note.instances.push_back(NoteInstance(view, i));
+  note.unreported = UnreportedCandidates(view);
   return note;
+}
+
+std::vector<Estimate> UnreportedCandidates(const FrameView& view) {
+  struct Taken {
+    std::uint32_t model_id;
+    Pose T_raw_model;
+  };
+  std::vector<Taken> taken;
+  for (const Detection& d : view.result.detections) taken.push_back({d.model_id, d.T_camera_model});
+  std::vector<Estimate> unreported;
+  for (const Candidate& c : view.recognizer.candidates()) {
+    const PreparedModel& model = view.recognizer.prepared_model(c.model);
+    Detection d;
+    d.model_id = model.view.id;
+    d.score = c.score;
+    d.T_camera_model = view.recognizer.T_rectified_raw().Inverse() * c.pose.T_camera_model;
+    const bool is_taken = std::ranges::any_of(taken, [&](const Taken& t) {
+      return t.model_id == d.model_id && RelativeVertexError(model, d.T_camera_model, t.T_raw_model) < kSamePlaceD;
+    });
+    if (is_taken) continue;
+    taken.push_back({d.model_id, d.T_camera_model});
+    unreported.push_back(ToEstimate(d, view.entry, -1));
+  }
+  return unreported;
 }
 
 std::vector<ScoredDetection> ScoredCandidates(const FrameView& view, double min_visible_fraction) {

@@ -197,21 +197,45 @@ function legend() {
 // --- viewer ---
 
 let viewed = null;  // item
+let eye = 'left';
 const listOf = (item) => ({ miss: misses, alarm: alarms, frame: frames })[item.kind].filter((x) => x === item || passes(x));
+
+// Puts the item's picture into the viewer. `window`: what of it; the eye's own shift comes on top.
+function drawViewed(window) {
+  const drawing = picture(viewed.frame, window, { focus: viewed.kind === 'miss' ? viewed.what : null, caption: placeOf(viewed), eye });
+  makeZoomable(drawing, viewed.frame);
+  byId('viewer-picture').replaceChildren(drawing);
+  showLayers();
+  fitText(drawing);
+}
 
 function openViewer(item) {
   viewed = item;
+  eye = 'left';
   const list = listOf(item);
   const kind = { miss: 'miss', alarm: 'false alarm', frame: 'frame' }[item.kind];
   byId('viewer-title').textContent = (item.kind === 'frame' ? placeOf(item) : titleOf(item)) + ` — ${kind} ${list.indexOf(item) + 1} of ${list.length}`;
-  const box = item.kind === 'frame' ? null : item.what.pose && item.what.pose.box;
-  const drawing = picture(item.frame, windowAround(item.frame, box), { focus: item.kind === 'miss' ? item.what : null, caption: placeOf(item) });
-  makeZoomable(drawing, item.frame);
-  byId('viewer-picture').replaceChildren(drawing);
   byId('viewer-side').replaceChildren(...[item.kind === 'frame' ? null : badge(item.cause), ...detailsOf(item), depthScale(item.frame)].filter(Boolean));
-  showLayers();
   if (!byId('viewer').open) byId('viewer').showModal();
-  fitText(drawing);
+  const box = item.kind === 'frame' ? null : item.what.pose && item.what.pose.box;
+  drawViewed(windowAround(item.frame, box));
+  showEye();
+}
+
+// The same things through the other eye, at the same place of the screen.
+function switchEye() {
+  if (!viewed.frame.pictures.right) return;
+  const window = byId('viewer-picture').firstChild.getAttribute('viewBox').split(' ').map(Number);
+  const shift = viewed.what.pose ? meanDisparity(viewed.what.pose.seen) : 0;
+  eye = eye === 'left' ? 'right' : 'left';
+  window[0] += eye === 'right' ? -shift : shift;
+  drawViewed(window);
+  showEye();
+}
+
+function showEye() {
+  byId('viewer-eye').textContent = eye === 'left' ? 'Left image' : 'Right image';
+  byId('viewer-eye').hidden = !viewed.frame.pictures.right;
 }
 
 function stepViewer(by) {
@@ -241,6 +265,7 @@ function makeViewer() {
     el('input', { type: 'checkbox', id: 'layer-' + layer.id, checked: layer.on, on: { change: () => { layer.on = !layer.on; showLayers(); } } }), layer.name)));
   byId('viewer-previous').addEventListener('click', () => stepViewer(-1));
   byId('viewer-next').addEventListener('click', () => stepViewer(1));
+  byId('viewer-eye').addEventListener('click', switchEye);
   byId('viewer-close').addEventListener('click', () => byId('viewer').close());
   byId('viewer').addEventListener('close', () => { const back = viewed && byId(viewed.id); if (back) back.focus({ preventScroll: false }); });
 }
@@ -270,6 +295,7 @@ function onKey(event) {
   if (open && /^[1-6]$/.test(key)) toggleLayer(Number(key) - 1);
   else if (open && (key === 'arrowright' || key === 'n')) stepViewer(1);
   else if (open && (key === 'arrowleft' || key === 'p')) stepViewer(-1);
+  else if (open && key === 'r') switchEye();
   else if (!open && key === 'n') stepMiss(1);
   else if (!open && key === 'p') stepMiss(-1);
   else if (key === 't') toggleTheme();

@@ -3,46 +3,66 @@
 // The image as a blob: every picture of a frame shares it. Made when it is first seen.
 const imageUrl = (() => {
   const urls = new Map();
-  return (frame) => {
-    if (!urls.has(frame)) {
-      const [head, body] = frame.picture.split(',');
+  return (frame, eye) => {
+    const uri = frame.pictures[eye];
+    if (!urls.has(uri)) {
+      const [head, body] = uri.split(',');
       const bytes = Uint8Array.from(atob(body), (c) => c.charCodeAt(0));
-      urls.set(frame, URL.createObjectURL(new Blob([bytes], { type: head.slice(5, head.indexOf(';')) })));
+      urls.set(uri, URL.createObjectURL(new Blob([bytes], { type: head.slice(5, head.indexOf(';')) })));
     }
-    return urls.get(frame);
+    return urls.get(uri);
   };
 })();
 
-const pieces = (list, stride = 4) => {
+// Segments of one eye: x0, y0, x1, y1 each.
+function segmentPath(list) {
   let d = '';
-  for (let i = 0; i + 3 < list.length; i += stride) d += `M${list[i]} ${list[i + 1]}L${list[i + 2]} ${list[i + 3]}`;
+  for (let i = 0; i + 3 < list.length; i += 4) d += `M${list[i]} ${list[i + 1]}L${list[i + 2]} ${list[i + 3]}`;
   return d;
+}
+
+// Lines in space: x0, y0, disparity0, x1, y1, disparity1 each; the right eye sees them shifted by their disparity.
+function linePath(list, eye) {
+  const right = eye === 'right' ? 1 : 0;
+  let d = '';
+  for (let i = 0; i + 5 < list.length; i += 6) {
+    d += `M${(list[i] - right * list[i + 2]).toFixed(1)} ${list[i + 1]}L${(list[i + 3] - right * list[i + 5]).toFixed(1)} ${list[i + 4]}`;
+  }
+  return d;
+}
+
+const meanDisparity = (list) => {
+  let sum = 0;
+  for (let i = 2; i < list.length; i += 3) sum += list[i];
+  return list.length ? sum / (list.length / 3) : 0;
 };
 
-const inverseDepths = (frame) => frame.lines.filter((_, i) => i % 5 === 4).map((z) => 1 / z);
+const disparities = (frame) => frame.lines.filter((_, i) => i % 3 === 2).map((d) => Math.max(d, 1e-3));
 
 // Depths, m, at the two ends of the colour scale; the few lines beyond take the end's colour.
 function depthRange(frame) {
-  const inverse = inverseDepths(frame);
-  return { near: 1 / quantile(inverse, 0.95), far: 1 / quantile(inverse, 0.05) };
+  const all = disparities(frame);
+  return { near: frame.f_baseline / quantile(all, 0.95), far: frame.f_baseline / quantile(all, 0.05) };
 }
 
 // 3D lines by depth, near red to far blue on a scale that is even in disparity; one path a colour.
-function depthLines(frame) {
-  const { near, far } = depthRange(frame), byColour = new Map();
-  inverseDepths(frame).forEach((v, k) => {
-    const share = Math.min(1, Math.max(0, (1 / near - v) / Math.max(1 / near - 1 / far, 1e-9)));
+function depthLines(frame, eye) {
+  const all = disparities(frame), near = quantile(all, 0.95), far = quantile(all, 0.05), byColour = new Map();
+  for (let k = 0; 6 * k < frame.lines.length; ++k) {
+    const mean = (all[2 * k] + all[2 * k + 1]) / 2;
+    const share = Math.min(1, Math.max(0, (near - mean) / Math.max(near - far, 1e-9)));
     const hue = Math.round(share * 12) * 20;
-    byColour.set(hue, (byColour.get(hue) || '') + pieces(frame.lines.slice(5 * k, 5 * k + 4)));
-  });
+    byColour.set(hue, (byColour.get(hue) || '') + linePath(frame.lines.slice(6 * k, 6 * k + 6), eye));
+  }
   return [...byColour].map(([hue, d]) => svg('path', { d, stroke: `hsl(${hue} 95% 60%)` }));
 }
 
-function wireframe(pose, kind, label) {
+function wireframe(pose, kind, eye, label) {
   const group = svg('g', { class: 'wire ' + kind },
-    svg('path', { class: 'hidden', d: pieces(pose.hidden) }), svg('path', { d: pieces(pose.seen) }));
+    svg('path', { class: 'hidden', d: linePath(pose.hidden, eye) }), svg('path', { d: linePath(pose.seen, eye) }));
   if (label && pose.box) {
-    group.append(svg('text', { x: pose.box[0], y: Math.max(12, pose.box[1] - 5) }, label));
+    const shift = eye === 'right' ? meanDisparity(pose.seen) : 0;
+    group.append(svg('text', { x: pose.box[0] - shift, y: Math.max(12, pose.box[1] - 5) }, label));
   }
   return group;
 }
@@ -58,15 +78,17 @@ const LAYERS = [
 
 const instanceKind = (i) => (!i.counts ? 'ignored' : i.hit ? 'met' : 'missed');
 
-// The layers of a frame. `focus`: an instance whose nearest candidate is shown.
-function layersOf(frame, focus) {
+// The layers of a frame as one eye sees it. `focus`: an instance whose nearest candidate is shown.
+function layersOf(frame, eye, focus) {
   const layer = (id, ...children) => svg('g', { class: 'layer ' + id }, ...children);
+  const truth = (i) => wireframe(i.pose, instanceKind(i), eye, i.counts && !i.hit ? nameOf(i.object) + ' missed' : '');
+  const found = (d) => wireframe(d.pose, d.verdict === 'false' ? 'false' : 'hit', eye, `${nameOf(d.object)} ${fixed(d.score, 2)}`);
   return [
-    layer('segments', svg('path', { d: pieces(frame.segments) })),
-    layer('lines', ...depthLines(frame)),
-    layer('truth', ...frame.instances.filter((i) => i.pose).map((i) => wireframe(i.pose, instanceKind(i), i.counts && !i.hit ? nameOf(i.object) + ' missed' : ''))),
-    layer('candidate', focus && focus.candidate ? wireframe(focus.candidate, 'nearest', '') : null),
-    layer('found', ...frame.detections.map((d) => wireframe(d.pose, d.verdict === 'false' ? 'false' : 'hit', `${nameOf(d.object)} ${fixed(d.score, 2)}`))),
+    layer('segments', svg('path', { d: segmentPath(frame.segments[eye]) })),
+    layer('lines', ...depthLines(frame, eye)),
+    layer('truth', ...frame.instances.filter((i) => i.pose).map(truth)),
+    layer('candidate', focus && focus.candidate ? wireframe(focus.candidate, 'nearest', eye, '') : null),
+    layer('found', ...frame.detections.map(found)),
   ];
 }
 
@@ -97,12 +119,12 @@ const drawWhenSeen = (() => {
 })();
 
 // `window`: x, y, width, height in pixels of the image. `shown`: ids of layers, null: as switched in the viewer.
-function picture(frame, window, { focus = null, shown = null, caption = '' } = {}) {
+function picture(frame, window, { focus = null, shown = null, caption = '', eye = 'left' } = {}) {
   const root = svg('svg', { viewBox: window.join(' '), class: 'picture', preserveAspectRatio: 'xMidYMid meet', role: 'img', 'aria-label': caption });
   if (shown) for (const layer of LAYERS) root.classList.toggle('no-' + layer.id, !shown.includes(layer.id));
   root.style.setProperty('--px', window[2] / 320);
   drawWhenSeen(root, () => root.append(
-    svg('image', { href: imageUrl(frame), x: 0, y: 0, width: frame.width, height: frame.height }), ...layersOf(frame, focus)));
+    svg('image', { href: imageUrl(frame, eye), x: 0, y: 0, width: frame.width, height: frame.height }), ...layersOf(frame, eye, focus)));
   return root;
 }
 

@@ -89,6 +89,14 @@ Json Measures(const Evaluation& evaluation) {
   return json;
 }
 
+// The score curve as it would go on below the threshold of what is reported.
+Json ContinuedCurve(const Evaluation& evaluation, const std::vector<FrameNote>& frames) {
+  std::vector<Estimate> all = evaluation.estimates;
+  for (const FrameNote& note : frames) all.insert(all.end(), note.unreported.begin(), note.unreported.end());
+  const Metrics metrics = ComputeMetrics(evaluation.truth, all);
+  return ToJson(ScoreCurve(CountedDetections(all, metrics), metrics.total.all.instances));
+}
+
 std::string NameOf(const std::filesystem::path& dataset) {
   const std::filesystem::path absolute = std::filesystem::absolute(dataset).lexically_normal();
   return absolute.has_filename() ? absolute.filename().string() : absolute.parent_path().filename().string();
@@ -115,6 +123,7 @@ Json Report::Data(const Evaluation& evaluation) const {
   Json data{{"dataset", NameOf(options_.dataset)}, {"min_score", options_.min_score}, {"objects", objects_}};
   data["measures"] = Measures(evaluation);
   data["measures"]["candidate_calibration"] = ToJson(MeasureReliability(candidates_));
+  data["measures"]["continued_curve"] = ContinuedCurve(evaluation, frames_);
   data["frames"] = Json::array();
   const std::set<InstanceKey> found = FoundInstances(evaluation);
   std::size_t row = 0;  // detections were noted in the order of the estimates
