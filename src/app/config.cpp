@@ -12,6 +12,26 @@ using yaml::YamlSection;
 
 constexpr std::int64_t kMaxFrames = 1'000'000'000;
 
+hal::LibcameraConfig ReadLibcamera(YamlSection section) {
+  hal::LibcameraConfig config;
+  std::int64_t exposure_us = 0, skew_us = config.max_skew.count();
+  double gain = 0;
+  section.Read("calibration", config.calibration_path);
+  section.Read("left", config.left);
+  section.Read("right", config.right);
+  section.Read("side_by_side", config.side_by_side);
+  section.Read("pixel_format", config.stream.pixel_format);
+  section.Read("frame_rate_hz", config.stream.frame_rate_hz, 0, 1000);
+  section.Read("exposure_us", exposure_us, 0, 1'000'000);
+  section.Read("gain", gain, 0, 1000);
+  section.Read("max_skew_us", skew_us, 0, 1'000'000);
+  section.Finish();
+  config.stream.exposure_us = static_cast<std::int32_t>(exposure_us);
+  config.stream.gain = static_cast<float>(gain);
+  config.max_skew = std::chrono::microseconds(skew_us);
+  return config;
+}
+
 hal::ReplayConfig ReadReplay(YamlSection section) {
   hal::ReplayConfig config;
   std::int64_t scene = 0;
@@ -57,6 +77,7 @@ CameraConfig ReadCamera(YamlSection section, const std::filesystem::path& file) 
   }
   section.Read("timeout_ms", timeout_ms, 10, 60'000);
   config.timeout = std::chrono::milliseconds(timeout_ms);
+  config.libcamera = ReadLibcamera(section.Section("libcamera"));
   config.replay = ReadReplay(section.Section("replay"));
   config.simulated = ReadSimulated(section.Section("simulated"));
   section.Finish();

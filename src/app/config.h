@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/dds_config.h"
+#include "hal/libcamera/libcamera_config.h"
 #include "hal/replay/replay_camera.h"
 #include "hal/simulated/simulated_camera.h"
 
@@ -24,6 +25,7 @@ struct CameraConfig {
   CameraBackend backend = CameraBackend::kUnset;
   // Without a frame for that long, health says no_frames.
   std::chrono::milliseconds timeout{1000};
+  hal::LibcameraConfig libcamera;
   hal::ReplayConfig replay;
   hal::SimulatedConfig simulated;
 };

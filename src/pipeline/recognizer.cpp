@@ -167,13 +167,14 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
     list.capacity = static_cast<std::uint32_t>(capacity);
     list.dropped += dropped;
   };
-  FindCorrespondences(params_.correspondences, camera(), model, lines_, line_sets_, pairs_);
+  const bool all_pairs = FindCorrespondences(params_.correspondences, camera(), model, lines_, line_sets_, pairs_);
   count(result.statistics.correspondences, pairs_.size(), kMaxCorrespondences, pairs_.dropped());
   timer.Done(Stage::kCorrespondences);
 
   const SceneEdges scene{camera(), left_edges_, right_edges_};
   const auto& pairs = pairs_.Sorted();
-  MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, {pairs.begin(), pairs.end()}, hypotheses_);
+  const bool all_poses = MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, {pairs.begin(), pairs.end()}, hypotheses_);
+  result.budget_hit = result.budget_hit || !all_pairs || !all_poses;
   count(result.statistics.hypotheses, hypotheses_.size(), kMaxHypotheses, hypotheses_.dropped());
   const auto& hypotheses = hypotheses_.Sorted();
   const PoseScorer scorer(params_.hypotheses.score, scene, model);

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "base/work_budget.h"
+
 namespace wirepose {
 namespace {
 
@@ -12,11 +14,13 @@ class Matcher {
  public:
   Matcher(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
           const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out)
-      : params_(params), camera_(camera), model_(model), lines_(lines), sets_(sets), out_(out) {
+      : params_(params), camera_(camera), model_(model), lines_(lines), sets_(sets), out_(out), budget_(params.max_steps) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (lines[i].has_depth) slack_[i] = SlackOf(lines[i]);
     }
   }
+
+  [[nodiscard]] bool budget_hit() const { return budget_.hit(); }
 
   void MatchBase(std::size_t base) {
     const Line3& line = lines_[base];
@@ -30,7 +34,7 @@ class Matcher {
       if (set.base_edge != assigned_edge_) Promote();
       assigned_edge_ = set.base_edge;
       for (const ImageLinePair& pair : sets_.OfBase(base)) {
-        if (!CanRank(pair)) break;  // nor can the rest: pairs come by falling quality
+        if (!CanRank(pair) || !budget_.Spend(1)) break;  // nor can the rest: pairs come by falling quality
         MatchPair(set, pair);
       }
     }
@@ -77,7 +81,7 @@ class Matcher {
     const PreparedMember* members = model_.members.data();
     const PreparedMember* from = std::lower_bound(
         members + begin, members + end, low, [](const PreparedMember& m, float value) { return m.distance_m < value; });
-    for (const PreparedMember* m = from; m != members + end && m->distance_m <= high; ++m) {
+    for (const PreparedMember* m = from; m != members + end && m->distance_m <= high && budget_.Spend(1); ++m) {
       if (MetricAgrees(pair, *m)) Emit(set, *m, pair);
     }
   }
@@ -163,17 +167,19 @@ class Matcher {
   FixedVector<CorrespondingPair, 2048> matches_;
   bool collected_ = false;  // anything since the last promotion
   EdgeBits edges_[2] = {};
+  WorkBudget budget_;
 };
 
 }  // namespace
 
-void FindCorrespondences(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
+bool FindCorrespondences(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                          const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out) {
   out.clear();
   Matcher matcher(params, camera, model, lines, sets, out);
   for (std::size_t b = 0; b < lines.size(); ++b) {
-    if (sets.first[b] != sets.first[b + 1]) matcher.MatchBase(b);
+    if (sets.first[b] != sets.first[b + 1] && !matcher.budget_hit()) matcher.MatchBase(b);
   }
+  return !matcher.budget_hit();
 }
 
 }  // namespace wirepose

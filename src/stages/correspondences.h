@@ -22,6 +22,8 @@ struct CorrespondenceParams {
   float cover_gain = 2.0F;       // rank of a line that shows its whole edge
   float junction_gain = 1.0F;    // rank of an image junction that is the model corner
   float no_depth_loss = 2.0F;    // rank given up by a pair whose V is not known
+  // Members compared with image pairs, for one model in one frame: bounds the time. Simulated kitchens need up to 280,000.
+  std::uint32_t max_steps = 600'000;
 };
 
 // The smallest corresponding line set: an image pair and the model pair that shares its parameter vector.
@@ -49,8 +51,9 @@ using CorrespondingPairs = KeepBest<CorrespondingPair, kMaxCorrespondences, Bett
 // any part of its edge that is not too short, but it cannot be longer. Symmetric models are searched from one edge of
 // each symmetry orbit. Pairs are ranked by the Gaussian likelihood of V under its own sigma, so that a precise agreement
 // beats a vague one, by length and cover of the lines, and by how many other lines fit the same assignment of the base.
-// O(pairs * representative base edges * members).
-void FindCorrespondences(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
+// O(pairs * representative base edges * members), at most `max_steps`: base lines come by falling length, and those for
+// which no steps are left are not searched. Returns false when that happened.
+bool FindCorrespondences(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                          const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out);
 
 }  // namespace wirepose

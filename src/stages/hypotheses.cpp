@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/work_budget.h"
+
 namespace wirepose {
 namespace {
 
@@ -33,7 +35,9 @@ class HypothesisMaker {
                   const Lines3& lines, Hypotheses& out)
       : params_(params), scene_(scene), model_(model), lines_(lines), out_(out), scorer_(params.score, scene, model),
         f_(static_cast<float>(scene.camera.f)), cx_(static_cast<float>(scene.camera.cx)),
-        cy_(static_cast<float>(scene.camera.cy)) {}
+        cy_(static_cast<float>(scene.camera.cy)), budget_(params.max_steps) {}
+
+  [[nodiscard]] bool budget_hit() const { return budget_.hit(); }
 
   void Make(const CorrespondingPair& match, const ImageLinePair& pair) {
     base_ = &lines_[pair.base];
@@ -177,6 +181,7 @@ class HypothesisMaker {
     if (!Covers(*base_edge_, base_->segment) || !Covers(*other_edge_, other_->segment)) return;
     const EdgeBits& visible = model_.EdgesSeenFrom(-(hypothesis_.R.transpose() * hypothesis_.t));
     if (!HasEdge(visible, hypothesis_.base_edge) || !HasEdge(visible, hypothesis_.other_edge)) return;
+    if (!budget_.Spend(1)) return;
     if (scorer_.Score(hypothesis_.R, hypothesis_.t, visible, hypothesis_.score)) out_.Push(hypothesis_);
   }
 
@@ -194,16 +199,21 @@ class HypothesisMaker {
   const PreparedEdge* other_edge_ = nullptr;
   Vector3 d1_, m1_;
   Hypothesis hypothesis_;
+  WorkBudget budget_;
 };
 
 }  // namespace
 
-void MakeHypotheses(const HypothesisParams& params, const SceneEdges& scene, const PreparedModel& model,
+bool MakeHypotheses(const HypothesisParams& params, const SceneEdges& scene, const PreparedModel& model,
                     const Lines3& lines, const ImageLineSets& sets, std::span<const CorrespondingPair> pairs,
                     Hypotheses& out) {
   out.clear();
   HypothesisMaker maker(params, scene, model, lines, out);
-  for (const CorrespondingPair& match : pairs) maker.Make(match, sets.pairs[match.image_pair]);
+  for (const CorrespondingPair& match : pairs) {
+    if (maker.budget_hit()) break;
+    maker.Make(match, sets.pairs[match.image_pair]);
+  }
+  return !maker.budget_hit();
 }
 
 }  // namespace wirepose

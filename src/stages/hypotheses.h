@@ -16,6 +16,8 @@ struct HypothesisParams {
   float length_angle_tolerance = 0.2F;    // cosine error up to which a direction solved from a length is believed
   float min_depth_m = 0.15F;       // of the object's centre
   PoseScoreParams score;
+  // Poses scored, for one model in one frame: bounds the time. Simulated kitchens need up to 1,100.
+  std::uint32_t max_steps = 2'000;
 };
 
 // A pose in the rectified left frame with its coarse score.
@@ -44,8 +46,10 @@ using Hypotheses = KeepBest<Hypothesis, kMaxHypotheses, BetterHypothesis>;
 // line, which has two solutions; the same plane fixes the position along the base line. Two parallel lines leave the
 // position along them open: every alignment of end points is tried (paper: "we consider all possibilities"). Poses are
 // kept when the segments lie within their projected edges, the two edges are visible from there (hidden-line table of
-// the model) and the visible edges find support in both images. O(correspondences * visible edges * samples).
-void MakeHypotheses(const HypothesisParams& params, const SceneEdges& scene, const PreparedModel& model,
+// the model) and the visible edges find support in both images. O(correspondences * visible edges * samples), at most
+// `max_steps` poses: the pairs come by falling rank, and those for which none is left are not tried. Returns false when
+// that happened.
+bool MakeHypotheses(const HypothesisParams& params, const SceneEdges& scene, const PreparedModel& model,
                     const Lines3& lines, const ImageLineSets& sets, std::span<const CorrespondingPair> pairs,
                     Hypotheses& out);
 

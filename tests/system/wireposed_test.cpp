@@ -199,9 +199,9 @@ TEST_F(RefusalTest, Configuration) {
   Expect(Robot(WriteConfig("camera: { backend: replay }\nmodels: [.]\n")), 2,
          {"robot.yaml", "camera.replay.data_set", "missing"});
   Expect(Robot(WriteConfig("camera: { backend: libcamera }\nmodels: [.]\n")), 2,
-         {"robot.yaml", "no libcamera backend"});
+         {"robot.yaml", "libcamera"});
   const std::string good = LoopingConfig();
-  Expect(Robot(good, {"--camera", "libcamera"}), 2, {"no libcamera backend"});
+  Expect(Robot(good, {"--camera", "libcamera"}), 2, {"robot.yaml", "libcamera"});
   Expect(Robot(good, {"--camera", "polaroid"}), 2, {"polaroid", "replay"});
 }
 

@@ -1,0 +1,103 @@
+#include "hal/libcamera/frame_pairing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+
+namespace wirepose::hal {
+namespace {
+
+using std::chrono::milliseconds;
+
+EyeFrame Frame(std::uint32_t slot, int time_ms) {
+  return {slot, static_cast<std::uint32_t>(time_ms / 33), milliseconds(time_ms), false};
+}
+
+class FramePairingTest : public ::testing::Test {
+ protected:
+  FramePairing pairing_{milliseconds(16)};
+  FreedSlots freed_;
+};
+
+TEST_F(FramePairingTest, NothingWithoutBothEyes) {
+  EXPECT_FALSE(pairing_.TakeNewest(freed_));
+  pairing_.Add(0, Frame(0, 100));
+  EXPECT_FALSE(pairing_.TakeNewest(freed_));
+  EXPECT_TRUE(freed_.empty()) << "its partner may still come";
+  pairing_.Add(1, Frame(2, 103));
+  const auto pair = pairing_.TakeNewest(freed_);
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(pair->left.slot, 0U);
+  EXPECT_EQ(pair->right.slot, 2U);
+  EXPECT_TRUE(freed_.empty());
+  EXPECT_EQ(pairing_.unpaired(), 0U);
+}
+
+TEST_F(FramePairingTest, ALostFrameDoesNotShiftThePairs) {
+  pairing_.Add(0, Frame(0, 100));
+  pairing_.Add(0, Frame(1, 133));
+  pairing_.Add(1, Frame(0, 134));  // the one at 100 ms was lost
+  const auto pair = pairing_.TakeNewest(freed_);
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(pair->left.slot, 1U);
+  ASSERT_EQ(freed_.size(), 1U);
+  EXPECT_EQ(freed_[0].eye, 0U);
+  EXPECT_EQ(freed_[0].slot, 0U);
+  EXPECT_EQ(pairing_.unpaired(), 1U);
+}
+
+TEST_F(FramePairingTest, ASlowCallerGetsTheNewestPair) {
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    pairing_.Add(0, Frame(i, 100 + 33 * static_cast<int>(i)));
+    pairing_.Add(1, Frame(i, 101 + 33 * static_cast<int>(i)));
+  }
+  const auto pair = pairing_.TakeNewest(freed_);
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(pair->left.slot, 2U);
+  EXPECT_EQ(freed_.size(), 4U);
+  EXPECT_EQ(pairing_.unpaired(), 0U) << "they had partners";
+}
+
+TEST_F(FramePairingTest, ACameraWhosePartnerIsSilentKeepsABuffer) {
+  for (std::uint32_t i = 0; i < 4; ++i) pairing_.Add(0, Frame(i, 100 + 33 * static_cast<int>(i)));
+  EXPECT_FALSE(pairing_.TakeNewest(freed_));
+  EXPECT_EQ(freed_.size(), 2U) << "at most two wait";
+}
+
+// Random losses, delays and order of arrival: a pair is never farther apart than allowed, no slot is lost or used twice.
+TEST_F(FramePairingTest, RandomStreamsKeepTheBooks) {
+  std::mt19937 random(9);
+  for (int round = 0; round < 200; ++round) {
+    FramePairing pairing(milliseconds(16));
+    std::array<std::array<bool, kCameraBuffers>, 2> with_camera;
+    for (auto& eye : with_camera) eye.fill(true);
+    const int skew = static_cast<int>(random() % 30) - 15;
+    const auto give_back = [&](std::size_t eye, std::uint32_t slot) {
+      ASSERT_FALSE(with_camera[eye][slot]) << "twice";
+      with_camera[eye][slot] = true;
+    };
+    for (int t = 0; t < 100; ++t) {
+      for (std::size_t eye = 0; eye < 2; ++eye) {
+        const auto slot = std::find(with_camera[eye].begin(), with_camera[eye].end(), true);
+        if (random() % 5 == 0 || slot == with_camera[eye].end()) continue;  // lost
+        *slot = false;
+        pairing.Add(eye, Frame(static_cast<std::uint32_t>(slot - with_camera[eye].begin()),
+                               33 * t + (eye == 1 ? skew : 0)));
+      }
+      if (random() % 3 == 0) continue;  // the caller is busy
+      FreedSlots freed;
+      const auto pair = pairing.TakeNewest(freed);
+      for (const FreedSlot& f : freed) give_back(f.eye, f.slot);
+      if (!pair) continue;
+      ASSERT_EQ(pair->right.time - pair->left.time, milliseconds(skew));
+      give_back(0, pair->left.slot);
+      give_back(1, pair->right.slot);
+      for (const auto& eye : with_camera) ASSERT_GE(std::count(eye.begin(), eye.end(), true), 2);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wirepose::hal
