@@ -48,7 +48,7 @@ class StressTest : public test::BusTest {
     EXPECT_TRUE(WaitUntil(
         [&] {
           publisher_->Publish(report_);
-          return UsedKib() < before + 70;  // one to three dead; buffers may still grow
+          return UsedKib() < before + 24;
         },
         kLease + seconds(10)))
         << "the dead are not forgotten: " << UsedKib() << " KiB";
@@ -82,9 +82,9 @@ TEST_F(StressTest, StoppedSubscriberHoldsUpNobody) {
   longest_publish_ = {};
   const std::uint64_t dropped = publisher_->results_dropped();
   const std::uint64_t sent_before = sequence_;
-  Publish(150, report_, milliseconds(20));
+  Publish(600, report_, milliseconds(5));
   EXPECT_LT(longest_publish_, kNoStall);
-  EXPECT_LE(publisher_->results_dropped(), dropped + 15) << "a tenth: what a busy machine may take";
+  EXPECT_EQ(publisher_->results_dropped(), dropped);
   std::printf("stopped: longest hand-over %.3f ms, pool %zu KiB before, %zu after\n",
               1e-6 * static_cast<double>(longest_publish_.count()), before, UsedKib());
   EXPECT_LT(UsedKib(), before + 16);
@@ -95,7 +95,7 @@ TEST_F(StressTest, StoppedSubscriberHoldsUpNobody) {
   EXPECT_EQ(tallies.at("recognition")["last_sequence"], sequence_) << "it did not catch up";
   const auto others = Finish(*lively);
   ASSERT_EQ(others.size(), 1u);
-  EXPECT_GE(others.at("recognition")["samples"], (sequence_ - sent_before) / 2);
+  EXPECT_GE(others.at("recognition")["samples"], (sequence_ - sent_before) * 9 / 10);
 }
 
 TEST_F(StressTest, TwentySubscribers) {
@@ -118,7 +118,7 @@ TEST_F(StressTest, TwentySubscribers) {
   for (const auto& subscriber : subscribers) {
     const auto tallies = Finish(*subscriber);
     ASSERT_EQ(tallies.size(), 3u);
-    EXPECT_GE(tallies.at("recognition")["samples"], 50);
+    EXPECT_GE(tallies.at("recognition")["samples"], 80);
   }
   unsetenv("CYCLONEDDS_URI");
   EXPECT_EQ(publisher_->write_errors(), 0u);
@@ -137,7 +137,7 @@ TEST_F(StressTest, RestartedPublisherIsFoundAgain) {
   ASSERT_EQ(tallies.size(), 1u);
   EXPECT_EQ(tallies.at("recognition")["last_sequence"], sequence_);
   std::printf("longest silence over 3 restarts: %s ms\n", tallies.at("recognition")["longest_gap_ms"].dump().c_str());
-  EXPECT_LT(tallies.at("recognition")["longest_gap_ms"], 4000);
+  EXPECT_LT(tallies.at("recognition")["longest_gap_ms"], 2000);
 }
 
 // From handing over a frame to the subscriber in another process, at 30 frames a second. Printed for docs/dds.md; the
