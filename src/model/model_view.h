@@ -31,6 +31,11 @@ struct ModelView {
   [[nodiscard]] Vector3 VertexPosition(std::size_t i) const { return {vertices[i].x, vertices[i].y, vertices[i].z}; }
 };
 
+// True when the face turns towards an observer at `eye` (model frame, m).
+inline bool IsTowards(const ModelFace& face, const Vector3& eye) {
+  return Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye) > face.offset_m;
+}
+
 }  // namespace wirepose
 
 #endif  // WIREPOSE_MODEL_MODEL_VIEW_H_

@@ -35,10 +35,6 @@ void MarkRepresentatives(PreparedModel& model) {
   }
 }
 
-bool IsTowards(const ModelFace& face, const Vector3& eye) {
-  return Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye) > face.offset_m;
-}
-
 // Every vertex lies behind every face.
 bool IsConvex(const ModelView& view) {
   const float tolerance = 0.002F * view.diameter_m;

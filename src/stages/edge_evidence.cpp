@@ -176,18 +176,13 @@ class Gatherer {
       if (support[e].length_px <= 0 || support[e].supported_px < 0.5F * support[e].length_px) continue;
       ++out_.supported_edges;
       for (const std::uint16_t face : model_.view.edges[e].face) {
-        if (face == kNoFace || !IsTowards(face)) continue;
+        if (face == kNoFace || !IsTowards(model_.view.faces[face], eye_)) continue;
         std::uint32_t& word = faces[face / 32];
         const std::uint32_t bit = 1U << (face % 32);
         if ((word & bit) == 0) ++out_.supported_faces;
         word |= bit;
       }
     }
-  }
-
-  [[nodiscard]] bool IsTowards(std::size_t f) const {
-    const ModelFace& face = model_.view.faces[f];
-    return Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye_) > face.offset_m;
   }
 
   const VerifyParams& params_;

@@ -107,9 +107,7 @@ class Promoter {
   }
 
   [[nodiscard]] bool FacesCamera(const CorrespondingSet& set, std::uint16_t f) const {
-    const ModelFace& face = model_.view.faces[f];
-    const Vector3 eye = -(set.R.transpose() * set.t);
-    return Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye) > face.offset_m;
+    return IsTowards(model_.view.faces[f], -(set.R.transpose() * set.t));
   }
 
   // One Gauss-Newton step on all members: at both ends of each line the offset from the projected edge and, with depth,

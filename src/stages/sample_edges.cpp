@@ -6,10 +6,6 @@
 namespace wirepose {
 namespace {
 
-Vector3 Normal(const ModelFace& face) { return {face.normal[0], face.normal[1], face.normal[2]}; }
-
-bool FacesEye(const ModelFace& face, const Vector3& eye) { return Normal(face).dot(eye) > face.offset_m; }
-
 // Where the segment eye -> point meets a triangle, as a share of its length; outside [0, 1] or NaN: nowhere that hides.
 // (Moeller & Trumbore 1997.)
 bool Blocks(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& eye, const Vector3& ray) {
@@ -55,7 +51,7 @@ void FindFrontTriangles(const RectifiedCamera& camera, const ModelView& model, c
   const Vector3 eye = -(R.transpose() * t);
   for (std::size_t i = 0; i < model.triangles.size(); ++i) {
     const ModelTriangle& triangle = model.triangles[i];
-    if (!FacesEye(model.faces[triangle.face], eye)) continue;
+    if (!IsTowards(model.faces[triangle.face], eye)) continue;
     FrontTriangle front{static_cast<std::uint16_t>(i), Vector2(1e9F, 1e9F), Vector2(-1e9F, -1e9F)};
     for (const std::uint16_t v : triangle.vertex) {
       const Vector3 p = R * model.VertexPosition(v) + t;

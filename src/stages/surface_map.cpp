@@ -27,7 +27,7 @@ class Rasterizer {
     float low_x = 1e9F, low_y = 1e9F, high_x = -1e9F, high_y = -1e9F;
     for (std::size_t i = 0; i < model_.view.triangles.size(); ++i) {
       const ModelFace& face = model_.view.faces[model_.view.triangles[i].face];
-      if (Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye) <= face.offset_m || !Corners(i)) continue;
+      if (!IsTowards(face, eye) || !Corners(i)) continue;
       seen.push_back(static_cast<std::uint16_t>(i));
       for (const Corner& c : corner_) {
         low_x = std::min(low_x, c.x), high_x = std::max(high_x, c.x);

@@ -107,11 +107,6 @@ class EvidenceGatherer {
   }
 
  private:
-  [[nodiscard]] bool Faces(std::size_t f) const {
-    const ModelFace& face = model_.view.faces[f];
-    return Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye_) > face.offset_m;
-  }
-
   [[nodiscard]] Vector3 Project(std::uint16_t vertex) const {
     const Vector3 p = R_ * model_.view.VertexPosition(vertex) + t_;
     const float z = std::max(p.z(), 0.05F);
@@ -122,7 +117,7 @@ class EvidenceGatherer {
   // Patches on a grid over the face's triangles, where the object does not hide itself.
   void Face(std::size_t f) {
     const ModelFace& face = model_.view.faces[f];
-    if (!Faces(f)) return;
+    if (!IsTowards(face, eye_)) return;
     float area = 0;
     for (int i = 0; i < face.triangle_count; ++i) area += TriangleArea(face.first_triangle + i);
     if (area < params_.min_face_px2) return;
