@@ -50,7 +50,8 @@ Thing Carton(Random& random) {
 
 Thing SmallBox(Random& random) {
   const Vector3 size(DrawFloat(random, {0.05, 0.14}), DrawFloat(random, {0.04, 0.1}), DrawFloat(random, {0.03, 0.14}));
-  return {MakeBox(size), Surface(random, random.Chance(0.7) ? Texture::kGrocery : Texture::kPlain, {0.1, 0.85}, {0, 0.04}), true};
+  return {MakeBox(size),
+          Surface(random, random.Chance(0.7) ? Texture::kGrocery : Texture::kPlain, {0.1, 0.85}, {0, 0.04}), true};
 }
 
 Thing Milk(Random& random) {
@@ -69,7 +70,9 @@ Thing OtherBook(Random& random) {
 Thing Board(Random& random) {
   Material m = Surface(random, Texture::kWood, {0.25, 0.6}, {0, 0.02});
   m.scale_m = DrawFloat(random, {0.04, 0.12});
-  return {MakeBox({DrawFloat(random, {0.25, 0.42}), DrawFloat(random, {0.16, 0.28}), DrawFloat(random, {0.012, 0.025})}), m};
+  return {
+      MakeBox({DrawFloat(random, {0.25, 0.42}), DrawFloat(random, {0.16, 0.28}), DrawFloat(random, {0.012, 0.025})}),
+      m};
 }
 
 Thing Roll(Random& random) {
@@ -85,7 +88,8 @@ Thing KnifeBlock(Random& random) {
 
 Thing Toaster(Random& random) {
   Material m = Surface(random, random.Chance(0.5) ? Texture::kSteel : Texture::kPlain, {0.08, 0.6}, {0.04, 0.25});
-  Mesh mesh = MakeBox({DrawFloat(random, {0.26, 0.34}), DrawFloat(random, {0.15, 0.2}), DrawFloat(random, {0.17, 0.22})});
+  Mesh mesh =
+      MakeBox({DrawFloat(random, {0.26, 0.34}), DrawFloat(random, {0.15, 0.2}), DrawFloat(random, {0.17, 0.22})});
   const Vector3 top = mesh.Max();
   for (const float y : {-0.03F, 0.03F}) Append(mesh, MakeBox({1.5F * top.x(), 0.02F, 0.008F}), {0, y, top.z()});
   Append(mesh, MakeBox({0.02F, 0.04F, 0.02F}), {top.x() + 0.01F, 0, 0.4F * top.z()});
@@ -96,14 +100,16 @@ Thing Toaster(Random& random) {
 
 Thing DrawThing(Random& random) {
   using Maker = Thing (*)(Random&);
-  static const std::vector<Maker> makers = {Can,    Can,   Bottle, Mug,      Mug,   Plates, Bowl,       Carton, Carton,
-                                            Carton, Milk,  SmallBox, SmallBox, OtherBook, Board, Roll, KnifeBlock, Toaster};
+  static const std::vector<Maker> makers = {Can,      Can,       Bottle, Mug,    Mug,        Plates,
+                                            Bowl,     Carton,    Carton, Carton, Milk,       SmallBox,
+                                            SmallBox, OtherBook, Board,  Roll,   KnifeBlock, Toaster};
   return DrawOne(random, makers)(random);
 }
 
 Thing DrawOccluder(Random& random) {
   using Maker = Thing (*)(Random&);
-  static const std::vector<Maker> makers = {Can, Bottle, Carton, Carton, SmallBox, Milk, Roll, KnifeBlock, Toaster, Bowl};
+  static const std::vector<Maker> makers = {Can,  Bottle, Carton,     Carton,  SmallBox,
+                                            Milk, Roll,   KnifeBlock, Toaster, Bowl};
   return DrawOne(random, makers)(random);
 }
 

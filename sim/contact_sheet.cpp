@@ -28,7 +28,8 @@ void Paste(const dataset::GrayImage& image, int x0, int y0, dataset::GrayImage& 
 
 }  // namespace
 
-Result<void, std::string> WriteContactSheet(const std::filesystem::path& dataset_root, const std::filesystem::path& png) {
+Result<void, std::string> WriteContactSheet(const std::filesystem::path& dataset_root,
+                                            const std::filesystem::path& png) {
   const Result<dataset::Dataset, std::string> set = dataset::ReadDataset(dataset_root);
   if (!set) return unexpected(set.error());
   const std::size_t count = std::min(kMost, set->frames.size()), columns = std::min(kColumns, count);
@@ -40,7 +41,8 @@ Result<void, std::string> WriteContactSheet(const std::filesystem::path& dataset
     const dataset::FrameEntry& frame = set->frames[i * set->frames.size() / count];
     const Result<dataset::GrayImage, dataset::ImageError> image = dataset::ReadGrayPng(frame.left_path);
     if (!image) return unexpected(image.error().message);
-    Paste(*image, kBorder + static_cast<int>(i % columns) * width, kBorder + static_cast<int>(i / columns) * height, sheet);
+    Paste(*image, kBorder + static_cast<int>(i % columns) * width, kBorder + static_cast<int>(i / columns) * height,
+          sheet);
   }
   return dataset::WriteGrayPng(png, sheet.view());
 }

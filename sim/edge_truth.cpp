@@ -40,7 +40,8 @@ bool IsSharp(const Meeting& m) {
 // lens's fold.
 class Projection {
  public:
-  explicit Projection(const Camera& camera) : camera_(camera), lens_(camera.intrinsics), T_camera_world_(camera.T_world_camera.Inverse()) {}
+  explicit Projection(const Camera& camera)
+      : camera_(camera), lens_(camera.intrinsics), T_camera_world_(camera.T_world_camera.Inverse()) {}
 
   [[nodiscard]] std::optional<Vector2d> operator()(const Vector3d& world) const {
     const Vector3d p = T_camera_world_ * world;
@@ -95,7 +96,8 @@ std::vector<std::array<Vector3d, 2>> SharpEdges(const Mesh& mesh) {
   return edges;
 }
 
-std::vector<dataset::EdgePart> VisibleEdgeParts(const Renderer& renderer, const Camera& camera, int instance, double step_px) {
+std::vector<dataset::EdgePart> VisibleEdgeParts(const Renderer& renderer, const Camera& camera, int instance,
+                                                double step_px) {
   const Instance& object = renderer.scene().instances[static_cast<std::size_t>(instance)];
   const Projection project(camera);
   const Vector3d eye = camera.T_world_camera.t;

@@ -18,8 +18,8 @@ namespace wirepose::sim {
 // The visible parts of the sharp edges of one instance: inside the image and with nothing before
 // them, found at places that are at most `step_px` apart, so ends are uncertain by half of that.
 // Exact otherwise. O(edge length in pixels) rays.
-[[nodiscard]] std::vector<dataset::EdgePart> VisibleEdgeParts(const Renderer& renderer, const Camera& camera, int instance,
-                                                              double step_px = 0.5);
+[[nodiscard]] std::vector<dataset::EdgePart> VisibleEdgeParts(const Renderer& renderer, const Camera& camera,
+                                                              int instance, double step_px = 0.5);
 
 }  // namespace wirepose::sim
 

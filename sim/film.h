@@ -15,7 +15,9 @@ namespace wirepose::sim {
 struct Film {
   Film(const Camera& camera, int samples_per_side);
 
-  [[nodiscard]] float* row(int y) { return samples.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width); }
+  [[nodiscard]] float* row(int y) {
+    return samples.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+  }
   [[nodiscard]] const float* row(int y) const {
     return samples.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
   }

@@ -71,7 +71,8 @@ void AddDrawers(Random& random, const KitchenStyle& style, const Front& whole, S
 
 void AddDoors(Random& random, const KitchenStyle& style, const Front& whole, bool is_low_grip, SceneBuilder& builder) {
   const double middle = 0.5 * (whole.x0 + whole.x1);
-  const Grip left = is_low_grip ? Grip::kBottomLeft : Grip::kLeft, right = is_low_grip ? Grip::kBottomRight : Grip::kRight;
+  const Grip left = is_low_grip ? Grip::kBottomLeft : Grip::kLeft,
+             right = is_low_grip ? Grip::kBottomRight : Grip::kRight;
   if (whole.x1 - whole.x0 < 0.5) {
     AddFront(random, style, whole, random.Chance(0.5) ? left : right, builder);
     return;
@@ -105,10 +106,12 @@ void BuildBaseCabinets(Random& random, const KitchenStyle& style, const Row& row
   builder.AddSlab({row.x0 + 0.002, front, row.floor_z + kPlinth}, {row.x1 - 0.002, row.wall_y, top}, style.carcass);
   Material plinth = style.carcass;
   plinth.albedo *= 0.5F;
-  builder.AddSlab({row.x0 + 0.004, front + 0.05, row.floor_z}, {row.x1 - 0.004, row.wall_y, row.floor_z + kPlinth}, plinth);
+  builder.AddSlab({row.x0 + 0.004, front + 0.05, row.floor_z}, {row.x1 - 0.004, row.wall_y, row.floor_z + kPlinth},
+                  plinth);
   double x = row.x0;
   for (const double width : Units(random, row.x1 - row.x0)) {
-    const Front whole{x + kGap / 2, x + width - kGap / 2, row.floor_z + kPlinth + kGap, top - 0.012, front - kFrontThickness};
+    const Front whole{x + kGap / 2, x + width - kGap / 2, row.floor_z + kPlinth + kGap, top - 0.012,
+                      front - kFrontThickness};
     if (random.Chance(0.45)) {
       AddDrawers(random, style, whole, builder);
     } else {
@@ -126,12 +129,14 @@ void BuildWallCabinets(Random& random, const KitchenStyle& style, const Row& row
   builder.AddSlab({row.x0 + 0.002, front, z0}, {row.x1 - 0.002, row.wall_y, z1}, style.carcass);
   double x = row.x0;
   for (const double width : Units(random, row.x1 - row.x0)) {
-    AddDoors(random, style, {x + kGap / 2, x + width - kGap / 2, z0 + kGap, z1 - kGap, front - kFrontThickness}, true, builder);
+    AddDoors(random, style, {x + kGap / 2, x + width - kGap / 2, z0 + kGap, z1 - kGap, front - kFrontThickness}, true,
+             builder);
     x += width;
   }
 }
 
-void BuildTable(const Vector3d& half, double floor_z, const Material& top, const Material& legs, SceneBuilder& builder) {
+void BuildTable(const Vector3d& half, double floor_z, const Material& top, const Material& legs,
+                SceneBuilder& builder) {
   constexpr double kThickness = 0.035, kLeg = 0.06, kInset = 0.04, kApron = 0.08;
   const double hx = half.x(), hy = half.y();
   builder.AddSlab({-hx, -hy, -kThickness}, {hx, hy, 0}, top);
@@ -163,7 +168,8 @@ void BuildChair(const Vector3d& at, double yaw_rad, const Material& material, Sc
     add({x0, -kHalf, 0}, {x0 + kLeg, -kHalf + kLeg, kSeat - 0.03});
     add({x0, kHalf - kLeg, 0}, {x0 + kLeg, kHalf, kBack});
   }
-  for (const double z : {0.58, 0.7, 0.82}) add({-kHalf + kLeg, kHalf - 0.028, z}, {kHalf - kLeg, kHalf - 0.008, z + 0.055});
+  for (const double z : {0.58, 0.7, 0.82})
+    add({-kHalf + kLeg, kHalf - 0.028, z}, {kHalf - kLeg, kHalf - 0.008, z + 0.055});
 }
 
 }  // namespace wirepose::sim

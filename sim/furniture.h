@@ -18,7 +18,7 @@ struct KitchenStyle {
 struct Row {
   double x0 = 0, x1 = 0;
   double wall_y = 0;
-  double top_z = 0;    // of the worktop
+  double top_z = 0;  // of the worktop
   double floor_z = 0;
 };
 

@@ -40,7 +40,8 @@ IndirectLight::IndirectLight(const Shader& shader, const Camera& camera, int mar
   const Lens lens(camera.intrinsics);
   ForEachRow(height_, threads, [&](int y) {
     for (int x = 0; x < width_; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+      const std::size_t i =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
       places_[i] = Gather(camera, lens, x, y, Mix(seed, i));
     }
   });
@@ -102,7 +103,8 @@ std::vector<float> IndirectLight::Smoothed(int gap, int threads) const {
 }
 
 float IndirectLight::At(const Vector2d& pixel, const SurfacePoint& surface) const {
-  const auto gx = static_cast<float>((pixel.x() + margin_) / kStep), gy = static_cast<float>((pixel.y() + margin_) / kStep);
+  const auto gx = static_cast<float>((pixel.x() + margin_) / kStep),
+             gy = static_cast<float>((pixel.y() + margin_) / kStep);
   const int x0 = static_cast<int>(std::floor(gx)), y0 = static_cast<int>(std::floor(gy));
   float sum = 0, weights = 0;
   // The four places around the pixel if they are of this surface, else those one further out.
@@ -112,7 +114,8 @@ float IndirectLight::At(const Vector2d& pixel, const SurfacePoint& surface) cons
         if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
         const Place& q = Get(x, y);
         if (q.instance != surface.instance || q.normal.dot(surface.normal) < kSameSide) continue;
-        const float near = 2.01F + static_cast<float>(reach) - std::max(std::abs(gx - static_cast<float>(x)), std::abs(gy - static_cast<float>(y)));
+        const float near = 2.01F + static_cast<float>(reach) -
+                           std::max(std::abs(gx - static_cast<float>(x)), std::abs(gy - static_cast<float>(y)));
         const float weight = reach == 0 ? std::max(1 - std::abs(gx - static_cast<float>(x)), 0.01F) *
                                               std::max(1 - std::abs(gy - static_cast<float>(y)), 0.01F)
                                         : near;

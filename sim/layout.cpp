@@ -114,7 +114,8 @@ RestingPose Layout::DrawRest(const Mesh& mesh, Rest rest, bool is_cuboid) {
   std::vector<RestingPose> poses = RestingPoses(mesh);
   if (!is_cuboid || rest == Rest::kUpright) return poses.front();
   if (rest == Rest::kFlat) {
-    return *std::min_element(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
+    return *std::min_element(poses.begin(), poses.end(),
+                             [](const auto& a, const auto& b) { return a.height < b.height; });
   }
   return DrawOne(random_, poses);
 }
@@ -130,7 +131,8 @@ Material Layout::DrawMaterial(const ObjectSpec& spec, const std::string& name, c
     const float step = DrawFloat(random_, *spec.contrast);
     m.albedo = std::clamp(random_.Chance(0.5) ? ground + step : ground - step, 0.03F, 0.9F);
   } else {
-    m.albedo = random_.Chance(0.2) ? std::clamp(ground + DrawFloat(random_, {-0.12, 0.12}), 0.05F, 0.85F) : StandOut(random_, ground);
+    m.albedo = random_.Chance(0.2) ? std::clamp(ground + DrawFloat(random_, {-0.12, 0.12}), 0.05F, 0.85F)
+                                   : StandOut(random_, ground);
   }
   m.second_albedo = StandOut(random_, m.albedo);
   const bool is_printed = spec.print == Print::kPrinted || (spec.print == Print::kAny && random_.Chance(0.85));
@@ -167,9 +169,8 @@ bool Layout::IsFree(const Footprint& print, const Region& region) const {
   const Eigen::Vector2d reach(c * print.half.x() + s * print.half.y(), s * print.half.x() + c * print.half.y());
   const Eigen::Vector2d off = (print.centre - region.within->centre).cwiseAbs() + reach;
   if ((off.array() > region.within->half.array()).any()) return false;
-  return std::none_of(standing_.begin(), standing_.end(), [&](const Standing& other) {
-    return other.z == region.z && Overlap(print, other.print, kGap);
-  });
+  return std::none_of(standing_.begin(), standing_.end(),
+                      [&](const Standing& other) { return other.z == region.z && Overlap(print, other.print, kGap); });
 }
 
 void Layout::PlaceClutter(const ClutterSpec& spec) {
@@ -191,12 +192,15 @@ void Layout::PlaceClutter(const ClutterSpec& spec) {
 void Layout::PlaceOccluders(const ClutterSpec& spec, const Vector3d& eye) {
   if (placed_.empty()) return;
   const int count = DrawCount(random_, spec.occluders);
-  const Vector3d object = builder_.scene().instances[static_cast<std::size_t>(placed_.front().instance)].T_world_object.t;
+  const Vector3d object =
+      builder_.scene().instances[static_cast<std::size_t>(placed_.front().instance)].T_world_object.t;
   const Eigen::Vector2d towards = (eye - object).head<2>().normalized(), across(-towards.y(), towards.x());
   for (int i = 0; i < count; ++i) {
     const Thing thing = DrawOccluder(random_);
-    const Eigen::Vector2d at = object.head<2>() + random_.Uniform(0.08, 0.35) * towards + random_.Uniform(-0.2, 0.2) * across;
-    const Region region{{at.x() - 0.03, at.x() + 0.03}, {at.y() - 0.03, at.y() + 0.03}, room_.worktop.z, &room_.worktop};
+    const Eigen::Vector2d at =
+        object.head<2>() + random_.Uniform(0.08, 0.35) * towards + random_.Uniform(-0.2, 0.2) * across;
+    const Region region{
+        {at.x() - 0.03, at.x() + 0.03}, {at.y() - 0.03, at.y() + 0.03}, room_.worktop.z, &room_.worktop};
     (void)PutDown(thing.mesh, RestingPoses(thing.mesh).front(), region, {-180, 180}, thing.material);
   }
 }

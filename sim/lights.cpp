@@ -13,7 +13,8 @@ AreaLight Above(const Vector3& centre, float half_x, float half_y, float intensi
 
 AreaLight Ceiling(Random& random, const Room& room, float intensity) {
   const float half = DrawFloat(random, {0.15, 0.35});
-  const Vector3 centre(DrawFloat(random, {-0.7, 0.7}), DrawFloat(random, {-1.6, -0.5}), static_cast<float>(room.ceiling_z) - 0.02F);
+  const Vector3 centre(DrawFloat(random, {-0.7, 0.7}), DrawFloat(random, {-1.6, -0.5}),
+                       static_cast<float>(room.ceiling_z) - 0.02F);
   return Above(centre, half, half, intensity);
 }
 
@@ -21,7 +22,8 @@ AreaLight Window(Random& random, const Room& room, float intensity) {
   const float side = random.Chance(0.5) ? 1.0F : -1.0F;
   const auto z = static_cast<float>(0.5 * (room.floor_z + room.ceiling_z)) + 0.3F;
   // u x v points into the room.
-  return {Vector3(3.15F * side, DrawFloat(random, {-2, -0.4}), z), Vector3(0, 0.5F * side, 0), Vector3(0, 0, -0.6F), intensity};
+  return {Vector3(3.15F * side, DrawFloat(random, {-2, -0.4}), z), Vector3(0, 0.5F * side, 0), Vector3(0, 0, -0.6F),
+          intensity};
 }
 
 // A small lamp close by: hard shadows.

@@ -15,9 +15,7 @@ constexpr float kPaper = 0.82F, kInk = 0.05F;
 struct Area {
   float x = 0, y = 0, width = 0, height = 0;
 
-  [[nodiscard]] bool Has(float px, float py) const {
-    return px >= x && py >= y && px < x + width && py < y + height;
-  }
+  [[nodiscard]] bool Has(float px, float py) const { return px >= x && py >= y && px < x + width && py < y + height; }
 };
 
 // A number in [low, high) that belongs to the face and the purpose `key`.
@@ -48,7 +46,8 @@ float Picture(const Area& a, float x, float y, const FacePoint& f, float ground)
     const float dx = u - cx, dy = v - cy;
     const float rx = std::cos(turn) * dx + std::sin(turn) * dy, ry = std::cos(turn) * dy - std::sin(turn) * dx;
     const bool is_disc = HashUnit(i, 12, f.seed) < 0.5F;
-    const bool is_in = is_disc ? rx * rx + 2 * ry * ry < size * size : std::abs(rx) < size && std::abs(ry) < 0.6F * size - 0.4F * rx;
+    const bool is_in =
+        is_disc ? rx * rx + 2 * ry * ry < size * size : std::abs(rx) < size && std::abs(ry) < 0.6F * size - 0.4F * rx;
     if (is_in) tone = Pick(f, 90 + i, 0.05F, 0.85F) * (1 + 0.25F * rx / size);
   }
   return tone;
@@ -149,7 +148,8 @@ float BookCover(const Material& m, const FacePoint& f) {
   const int kind = static_cast<int>(Pick(p, 5, 0, 4));
   const Area picture{0.1F * w, 0.16F * h, 0.8F * w, 0.52F * h};
   if (kind < 2 && picture.Has(p.x, p.y)) return Picture(picture, p.x, p.y, p, m.albedo);
-  if (kind == 2 && p.y > 0.14F * h && p.y < 0.7F * h) return Picture({0, 0.14F * h, w, 0.56F * h}, p.x, p.y, p, m.albedo);
+  if (kind == 2 && p.y > 0.14F * h && p.y < 0.7F * h)
+    return Picture({0, 0.14F * h, w, 0.56F * h}, p.x, p.y, p, m.albedo);
   return m.albedo * (1 + 0.02F * ValueNoise(p.x * 300, p.y * 300, p.seed));
 }
 

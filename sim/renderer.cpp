@@ -135,7 +135,8 @@ class PixelTracer {
                      {query.hit.Ng_x[k], query.hit.Ng_y[k], query.hit.Ng_z[k]}, ray.direction);
       const LightSample light = SampleLight(pixel, surface, first + k);
       const float matt = surface.albedo * (1 - surface.mirrored);
-      radiance[lane] = matt * (indirect_ != nullptr ? indirect_->At(pixel.centre, surface) : shader_.Ambient(surface.normal));
+      radiance[lane] =
+          matt * (indirect_ != nullptr ? indirect_->At(pixel.centre, surface) : shader_.Ambient(surface.normal));
       if (surface.mirrored > 0) {
         const std::uint64_t h = Mix(pixel.hash, 2000 + static_cast<std::uint64_t>(first + k));
         radiance[lane] += surface.mirrored * shader_.Reflection(surface, ray.direction, h);

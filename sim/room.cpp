@@ -8,7 +8,7 @@ namespace wirepose::sim {
 namespace {
 
 constexpr double kCounterHeight = 0.9, kTableHeight = 0.74, kStorey = 2.5;  // m
-constexpr double kWallReach = 3.2, kBehind = 4.0;                          // m from the origin
+constexpr double kWallReach = 3.2, kBehind = 4.0;                           // m from the origin
 
 Material DrawSurface(Random& random, const std::vector<Texture>& textures, const Range& albedo, const Range& gloss) {
   Material m;
@@ -98,8 +98,10 @@ void BuildAbove(Random& random, const RoomSpec& spec, const KitchenStyle& style,
     BuildWallCabinets(random, style, row, low, low + random.Uniform(0.55, 0.75), builder);
   } else if (kind < 0.8) {
     const double z = row.top_z + low;
-    builder.AddSlab({row.x0 + 0.1, room.wall_y - 0.24, z - 0.025}, {row.x1 - 0.1, room.wall_y - 0.01, z}, style.worktop);
-    room.boards.push_back({{0.5 * (row.x0 + row.x1), room.wall_y - 0.13}, {0.5 * (row.x1 - row.x0) - 0.12, 0.09}, z, 0.5F});
+    builder.AddSlab({row.x0 + 0.1, room.wall_y - 0.24, z - 0.025}, {row.x1 - 0.1, room.wall_y - 0.01, z},
+                    style.worktop);
+    room.boards.push_back(
+        {{0.5 * (row.x0 + row.x1), room.wall_y - 0.13}, {0.5 * (row.x1 - row.x0) - 0.12, 0.09}, z, 0.5F});
   } else {
     HangPosters(random, room, row.x0, row.x1, row.top_z + 0.65, builder);
   }
@@ -120,7 +122,8 @@ Room BuildCounter(Random& random, const RoomSpec& spec, bool needs_bay, SceneBui
   BuildAbove(random, spec, style, row, room, builder);
   const double bay = is_bay_right ? row.x1 : row.x0, side = is_bay_right ? 1 : -1;
   room.floor = {{bay + side * 0.4, room.wall_y - 0.42}, {0.38, 0.4}, room.floor_z, 0.4F};
-  HangPosters(random, room, is_bay_right ? row.x1 + 0.9 : -kWallReach, is_bay_right ? kWallReach : row.x0 - 0.9, 0.2, builder);
+  HangPosters(random, room, is_bay_right ? row.x1 + 0.9 : -kWallReach, is_bay_right ? kWallReach : row.x0 - 0.9, 0.2,
+              builder);
   room.worktop = {{0.5 * (row.x0 + row.x1), 0}, {0.5 * (row.x1 - row.x0) - 0.05, 0.3}, 0, style.worktop.albedo};
   return room;
 }
@@ -137,7 +140,8 @@ Room BuildTableRoom(Random& random, const RoomSpec& spec, SceneBuilder& builder)
     const Row row{x0, x0 + random.Uniform(1.5, 3), room.wall_y, kCounterHeight - kTableHeight, room.floor_z};
     BuildBaseCabinets(random, style, row, builder);
     BuildAbove(random, spec, style, row, room, builder);
-    room.boards.push_back({{0.5 * (row.x0 + row.x1), room.wall_y - 0.3}, {0.5 * (row.x1 - row.x0) - 0.1, 0.22}, row.top_z, 0.5F});
+    room.boards.push_back(
+        {{0.5 * (row.x0 + row.x1), room.wall_y - 0.3}, {0.5 * (row.x1 - row.x0) - 0.1, 0.22}, row.top_z, 0.5F});
   } else {
     HangPosters(random, room, -2, 2, 0.3, builder);
   }
@@ -146,10 +150,12 @@ Room BuildTableRoom(Random& random, const RoomSpec& spec, SceneBuilder& builder)
   const Vector3d half(random.Uniform(0.55, 0.8), random.Uniform(0.36, 0.45), 0);
   BuildTable(half, room.floor_z, top, legs, builder);
   const int chairs = random.Below(3);
-  const Material wood = random.Chance(0.5) ? legs : DrawSurface(random, {Texture::kWood, Texture::kPlain}, {0.05, 0.6}, {0, 0.03});
+  const Material wood =
+      random.Chance(0.5) ? legs : DrawSurface(random, {Texture::kWood, Texture::kPlain}, {0.05, 0.6}, {0, 0.03});
   for (int i = 0; i < chairs; ++i) {
     const double x = (i == 0 ? -0.5 : 0.5) * half.x();
-    BuildChair({x + random.Uniform(-0.1, 0.1), half.y() + random.Uniform(0.0, 0.25), room.floor_z}, random.Uniform(-0.3, 0.3), wood, builder);
+    BuildChair({x + random.Uniform(-0.1, 0.1), half.y() + random.Uniform(0.0, 0.25), room.floor_z},
+               random.Uniform(-0.3, 0.3), wood, builder);
   }
   room.worktop = {{0, 0}, {half.x() - 0.03, half.y() - 0.03}, 0, top.albedo};
   room.floor = {{random.Chance(0.5) ? -1.8 : 1.8, room.wall_y - 0.45}, {0.38, 0.4}, room.floor_z, 0.4F};

@@ -15,8 +15,8 @@ struct Place {
 };
 
 struct Room {
-  Place worktop;              // z = 0
-  Place floor;                // a bay as wide as a refrigerator, back to the wall
+  Place worktop;  // z = 0
+  Place floor;    // a bay as wide as a refrigerator, back to the wall
   double floor_z = -0.9, ceiling_z = 1.6;
   std::vector<Place> boards;  // shelves that hold clutter only
   double wall_y = 0;          // of the wall behind the worktop

@@ -81,8 +81,8 @@ Draft DrawScene(const ScenarioSpec& spec, std::uint64_t seed, const std::vector<
   Draft draft;
   Scenario& scenario = draft.scenario;
   SceneBuilder builder(scenario.scene);
-  const bool needs_bay =
-      std::any_of(spec.objects.begin(), spec.objects.end(), [](const ObjectSpec& o) { return o.on == Support::kFloor; });
+  const bool needs_bay = std::any_of(spec.objects.begin(), spec.objects.end(),
+                                     [](const ObjectSpec& o) { return o.on == Support::kFloor; });
   const Room room = BuildRoom(random, spec.room, needs_bay, builder);
   AddLights(random, spec.lights, room, scenario.scene);
   Layout layout(random, builder, room);
@@ -140,14 +140,18 @@ std::string NamesOf(const std::vector<TargetMesh>& targets) {
 Result<void, std::string> CheckModels(const ScenarioSpec& spec, const std::vector<TargetMesh>& targets) {
   for (const ObjectSpec& object : spec.objects) {
     for (const std::string& name : object.models) {
-      const bool is_known = std::any_of(targets.begin(), targets.end(), [&](const TargetMesh& t) { return t.name == name; });
+      const bool is_known =
+          std::any_of(targets.begin(), targets.end(), [&](const TargetMesh& t) { return t.name == name; });
       if (!is_known) {
-        return unexpected("scenario " + spec.name + ": no model '" + name + "' among the meshes; there are " + NamesOf(targets));
+        return unexpected("scenario " + spec.name + ": no model '" + name + "' among the meshes; there are " +
+                          NamesOf(targets));
       }
     }
-    const bool fits = std::any_of(targets.begin(), targets.end(), [&](const TargetMesh& t) { return FitsOn(object.on, t); });
+    const bool fits =
+        std::any_of(targets.begin(), targets.end(), [&](const TargetMesh& t) { return FitsOn(object.on, t); });
     if (object.models.empty() && !fits) {
-      return unexpected("scenario " + spec.name + ": no mesh is small enough for a worktop (0.6 m); add one, and check " +
+      return unexpected("scenario " + spec.name +
+                        ": no mesh is small enough for a worktop (0.6 m); add one, and check " +
                         "that the meshes are in millimetres");
     }
   }

@@ -23,7 +23,7 @@ struct Motion {
 
 struct Scenario {
   Scene scene;
-  StereoRig rig;                         // at time 0
+  StereoRig rig;                        // at time 0
   Vector3d look_at = Vector3d::Zero();  // world; orbits turn about it, drives go towards it
   Motion motion;
 

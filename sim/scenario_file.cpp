@@ -26,17 +26,18 @@ const Words<Support> kSupports = {
     {"worktop", Support::kWorktop}, {"floor", Support::kFloor}, {"refrigerator", Support::kOnRefrigerator}};
 const Words<Rest> kRests = {{"any", Rest::kAny}, {"upright", Rest::kUpright}, {"flat", Rest::kFlat}};
 const Words<Print> kPrints = {{"any", Print::kAny}, {"printed", Print::kPrinted}, {"plain", Print::kPlain}};
-const Words<PathKind> kPaths = {
-    {"still", PathKind::kStill}, {"orbit", PathKind::kOrbit}, {"drive", PathKind::kDrive}};
-const Words<LightStyle> kLights = {
-    {"ceiling", LightStyle::kCeiling}, {"window", LightStyle::kWindow},
-    {"lamp", LightStyle::kLamp},       {"flat", LightStyle::kFlat},
-    {"under_cabinet", LightStyle::kUnderCabinet}, {"mixed", LightStyle::kMixed}};
+const Words<PathKind> kPaths = {{"still", PathKind::kStill}, {"orbit", PathKind::kOrbit}, {"drive", PathKind::kDrive}};
+const Words<LightStyle> kLights = {{"ceiling", LightStyle::kCeiling},
+                                   {"window", LightStyle::kWindow},
+                                   {"lamp", LightStyle::kLamp},
+                                   {"flat", LightStyle::kFlat},
+                                   {"under_cabinet", LightStyle::kUnderCabinet},
+                                   {"mixed", LightStyle::kMixed}};
 const Words<FaultKind> kFaults = {
-    {"drop", FaultKind::kDrop},         {"duplicate", FaultKind::kDuplicate},   {"freeze", FaultKind::kFreeze},
-    {"swap", FaultKind::kSwap},         {"tear", FaultKind::kTear},             {"bit_flip", FaultKind::kBitFlip},
-    {"offset", FaultKind::kOffset},     {"exposure", FaultKind::kExposure},     {"smear", FaultKind::kSmear},
-    {"cover", FaultKind::kCover},       {"drift", FaultKind::kDrift},           {"disconnect", FaultKind::kDisconnect},
+    {"drop", FaultKind::kDrop},           {"duplicate", FaultKind::kDuplicate}, {"freeze", FaultKind::kFreeze},
+    {"swap", FaultKind::kSwap},           {"tear", FaultKind::kTear},           {"bit_flip", FaultKind::kBitFlip},
+    {"offset", FaultKind::kOffset},       {"exposure", FaultKind::kExposure},   {"smear", FaultKind::kSmear},
+    {"cover", FaultKind::kCover},         {"drift", FaultKind::kDrift},         {"disconnect", FaultKind::kDisconnect},
     {"clock_step", FaultKind::kClockStep}};
 
 template <typename T>

@@ -70,7 +70,7 @@ inline ObjectSpec AnyObjects(const Range& count) {
 
 struct ClutterSpec {
   Range count{3, 7};
-  Range occluders{0, 0};   // things put between the camera and the first object
+  Range occluders{0, 0};    // things put between the camera and the first object
   Range reach_m{0.5, 0.5};  // how far from the middle clutter stands, along x
 };
 
@@ -94,7 +94,7 @@ struct PathSpec {
 enum class LightStyle : std::uint8_t { kCeiling, kWindow, kLamp, kFlat, kUnderCabinet, kMixed };
 
 struct LightSpec {
-  std::vector<LightStyle> styles = {LightStyle::kCeiling, LightStyle::kWindow, LightStyle::kLamp,
+  std::vector<LightStyle> styles = {LightStyle::kCeiling, LightStyle::kWindow,       LightStyle::kLamp,
                                     LightStyle::kFlat,    LightStyle::kUnderCabinet, LightStyle::kMixed};
   Range ambient{0.5, 1.2};  // times the style's own
 };
@@ -115,24 +115,24 @@ struct SensorSpec {
 };
 
 enum class FaultKind : std::uint8_t {
-  kDrop,       // the frame never comes: a gap in the sequence
-  kDuplicate,  // the frame before once more, with a new number and stamp
-  kFreeze,     // the images of the frame before the fault
-  kSwap,       // left and right exchanged
-  kTear,       // lower part from the frame before
-  kBitFlip,    // bits flipped in `amount` of the bytes
-  kOffset,     // right exposed `amount` ms after left
-  kExposure,   // light times `amount`
-  kSmear,      // a greasy spot on the left lens
-  kCover,      // something before the left lens
-  kDrift,      // right camera turned by `amount` degrees against its calibration
+  kDrop,        // the frame never comes: a gap in the sequence
+  kDuplicate,   // the frame before once more, with a new number and stamp
+  kFreeze,      // the images of the frame before the fault
+  kSwap,        // left and right exchanged
+  kTear,        // lower part from the frame before
+  kBitFlip,     // bits flipped in `amount` of the bytes
+  kOffset,      // right exposed `amount` ms after left
+  kExposure,    // light times `amount`
+  kSmear,       // a greasy spot on the left lens
+  kCover,       // something before the left lens
+  kDrift,       // right camera turned by `amount` degrees against its calibration
   kDisconnect,  // the device is gone
-  kClockStep,  // stamps jump by `amount` ms, and stay
+  kClockStep,   // stamps jump by `amount` ms, and stay
 };
 
 struct FaultSpec {
   FaultKind kind = FaultKind::kDrop;
-  std::uint64_t at = 0;     // first frame
+  std::uint64_t at = 0;      // first frame
   std::uint64_t frames = 1;  // how many
   double amount = 0;
 };

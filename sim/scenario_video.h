@@ -29,7 +29,8 @@ class ScenarioVideo {
   // `scene` counts from 0. `threads` does not change a byte. The error is one line: an option out
   // of range, or see MakeScenario.
   [[nodiscard]] static Result<ScenarioVideo, std::string> Create(const ScenarioSpec& spec, int scene,
-                                                                 const std::vector<TargetMesh>& targets, int threads = 2);
+                                                                 const std::vector<TargetMesh>& targets,
+                                                                 int threads = 2);
 
   [[nodiscard]] StereoRig RigAt(std::uint64_t sequence) const;
   [[nodiscard]] StereoShot Shoot(std::uint64_t sequence, const ShotChange& change = {}) const;

@@ -53,8 +53,8 @@ SurfacePoint Shader::At(int instance, const Vector3& place, const Vector3& norma
   surface.normal = normal.normalized();
   if (surface.normal.dot(direction) > 0) surface.normal = -surface.normal;
   surface.instance = instance;
-  surface.albedo =
-      AlbedoAt(material, bounds_[index], frame.R_object_world * (place - frame.origin), frame.R_object_world * surface.normal);
+  surface.albedo = AlbedoAt(material, bounds_[index], frame.R_object_world * (place - frame.origin),
+                            frame.R_object_world * surface.normal);
   if (material.gloss > 0) {
     const float grazing = 1 + surface.normal.dot(direction) / direction.norm();
     const float squared = grazing * grazing;

@@ -65,8 +65,8 @@ class Shader {
   const Scene& scene_;
   const RayScene& rays_;
   const std::vector<Bounds>& bounds_;
-  std::vector<Frame> frames_;    // one an instance
-  std::vector<Vector3> shine_;   // one a light: the unit direction it shines to
+  std::vector<Frame> frames_;   // one an instance
+  std::vector<Vector3> shine_;  // one a light: the unit direction it shines to
 };
 
 }  // namespace wirepose::sim

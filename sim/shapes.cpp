@@ -47,8 +47,14 @@ Mesh MakeLathe(const std::vector<ProfilePoint>& profile, int sides) {
 }
 
 Mesh MakeBottle(float r, float h) {
-  return MakeLathe({{0.9F * r, 0}, {r, 0.02F * h}, {r, 0.55F * h}, {0.85F * r, 0.65F * h}, {0.4F * r, 0.78F * h},
-                    {0.33F * r, 0.93F * h}, {0.4F * r, 0.93F * h}, {0.4F * r, h}});
+  return MakeLathe({{0.9F * r, 0},
+                    {r, 0.02F * h},
+                    {r, 0.55F * h},
+                    {0.85F * r, 0.65F * h},
+                    {0.4F * r, 0.78F * h},
+                    {0.33F * r, 0.93F * h},
+                    {0.4F * r, 0.93F * h},
+                    {0.4F * r, h}});
 }
 
 Mesh MakeMug(float r, float h) {
@@ -71,8 +77,13 @@ Mesh MakePlates(float r, int count) {
 }
 
 Mesh MakeBowl(float r, float h) {
-  return MakeLathe({{0.45F * r, 0}, {0.75F * r, 0.3F * h}, {0.95F * r, 0.7F * h}, {r, h}, {0.96F * r, h},
-                    {0.7F * r, 0.35F * h}, {0.4F * r, 0.12F * h}});
+  return MakeLathe({{0.45F * r, 0},
+                    {0.75F * r, 0.3F * h},
+                    {0.95F * r, 0.7F * h},
+                    {r, h},
+                    {0.96F * r, h},
+                    {0.7F * r, 0.35F * h},
+                    {0.4F * r, 0.12F * h}});
 }
 
 Mesh MakeGableCarton(const Vector3& size) {

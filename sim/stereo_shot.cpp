@@ -21,7 +21,7 @@ StereoCalibration DefaultCalibration() {
 
 Camera LeftCamera(const StereoRig& rig) {
   const StereoCalibration& c = rig.calibration;
-  return {c.left,         c.width,        c.height,     rig.T_world_left,  rig.psf_sigma_px,
+  return {c.left,         c.width,        c.height,     rig.T_world_left, rig.psf_sigma_px,
           rig.vignetting, rig.exposure_s, rig.velocity, rig.rotation_rate};
 }
 
@@ -29,7 +29,7 @@ Camera RightCamera(const StereoRig& rig) {
   const StereoCalibration& c = rig.calibration;
   const Pose T_world_right = rig.T_world_left * c.T_right_left.Inverse();
   const Vector3d velocity = rig.velocity + rig.rotation_rate.cross(T_world_right.t - rig.T_world_left.t);
-  return {c.right,        c.width,        c.height, T_world_right,     rig.right_psf_sigma_px,
+  return {c.right,        c.width,        c.height, T_world_right,    rig.right_psf_sigma_px,
           rig.vignetting, rig.exposure_s, velocity, rig.rotation_rate};
 }
 

@@ -14,7 +14,7 @@ namespace wirepose::sim {
 struct StereoRig {
   StereoCalibration calibration;
   Pose T_world_left;          // raw left camera in the world
-  double psf_sigma_px = 0.5;   // blur of the left lens
+  double psf_sigma_px = 0.5;  // blur of the left lens
   double right_psf_sigma_px = 0.5;
   double vignetting = 0;  // of both lenses, see Camera
 
@@ -25,7 +25,7 @@ struct StereoRig {
 
   Sensor left_sensor;
   Sensor right_sensor{.gain = 0.9F, .serial = 2};  // the eyes of real rigs differ
-  float light = 1;               // more or less light than the exposure was chosen for
+  float light = 1;                                 // more or less light than the exposure was chosen for
   float exposure_target = 0.8F;  // grey level over 255; both eyes are exposed as the left one asks, see AutoExposure
 };
 

@@ -83,7 +83,8 @@ struct SceneTask {
 
 class Renderers {
  public:
-  Renderers(const std::vector<RenderJob>& jobs, const std::vector<TargetMesh>& targets, const ProgressListener& listener)
+  Renderers(const std::vector<RenderJob>& jobs, const std::vector<TargetMesh>& targets,
+            const ProgressListener& listener)
       : targets_(targets), listener_(listener), start_(std::chrono::steady_clock::now()) {
     for (const RenderJob& job : jobs) {
       progress_.total += job.spec.scenes * job.spec.frames;
@@ -137,8 +138,9 @@ class Renderers {
     const StereoShot shot = task.video->Shoot(sequence);
     const dataset::DepthImage depth = ToDepthImage(shot.truth);
     const std::lock_guard lock(task.mutex);
-    const auto added = task.writer->AddFrame(task.scene + 1, ToRecord(unit.frame, task.video->RigAt(sequence), shot.truth),
-                                             shot.left.view(), shot.right.view(), depth.view());
+    const auto added =
+        task.writer->AddFrame(task.scene + 1, ToRecord(unit.frame, task.video->RigAt(sequence), shot.truth),
+                              shot.left.view(), shot.right.view(), depth.view());
     if (!added) return added;
     if (--task.to_do > 0) return {};
     const auto finished = task.writer->FinishScene(task.scene + 1);
@@ -184,7 +186,8 @@ std::string ContentHash(const ScenarioSpec& spec, const std::vector<TargetMesh>&
   ByteHash hash;
   hash.Add(WIREPOSE_SIM_SOURCE_HASH);
   hash.Add(spec.source);
-  for (const double number : {double(spec.seed), double(spec.scenes), double(spec.frames), spec.rate_hz, double(spec.samples)}) {
+  for (const double number :
+       {double(spec.seed), double(spec.scenes), double(spec.frames), spec.rate_hz, double(spec.samples)}) {
     hash.Add(&number, sizeof number);
   }
   const StereoCalibration& c = spec.camera.calibration;

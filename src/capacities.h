@@ -17,7 +17,8 @@ inline constexpr std::size_t kMaxPixels = std::size_t{kMaxImageWidth} * kMaxImag
 // --- Features ------------------------------------------------------------------------------------------------------
 // Real kitchens show 150-300 segments of 12 px and more; the longest are kept.
 inline constexpr std::size_t kMaxSegments = 512;
-// Pixels on edge ridges: a sixth of a 640x480 image; photographs of clutter have 15,000 to 30,000. The weakest go first.
+// Pixels on edge ridges: a sixth of a 640x480 image; photographs of clutter have 15,000 to 30,000. The weakest go
+// first.
 inline constexpr std::size_t kMaxRidgePixels = 51200;
 // One connected edge; longer than any straight line in the image.
 inline constexpr std::size_t kMaxChain = 2048;
@@ -29,18 +30,18 @@ inline constexpr std::size_t kMaxCorrespondences = 1536;
 inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose
 // Pose hypotheses kept per model after the coarse score. Many of them are one pose.
 inline constexpr std::size_t kMaxHypotheses = 128;
-inline constexpr std::size_t kMaxCandidates = 8;  // corresponding line sets per model after duplicates are merged
-inline constexpr std::size_t kMaxRefined = 4;      // candidates of one model that are refined and verified
-inline constexpr std::size_t kMaxVerified = 64;    // of all models, that compete for the image's edges
+inline constexpr std::size_t kMaxCandidates = 8;     // corresponding line sets per model after duplicates are merged
+inline constexpr std::size_t kMaxRefined = 4;        // candidates of one model that are refined and verified
+inline constexpr std::size_t kMaxVerified = 64;      // of all models, that compete for the image's edges
 inline constexpr std::size_t kMaxEdgeSamples = 512;  // points on visible edges of one pose; the step widens to fit
 
 // --- Models --------------------------------------------------------------------------------------------------------
 inline constexpr std::size_t kMaxModels = 16;          // objects searched for at once (memory budget is stated for 16)
 inline constexpr std::size_t kMaxModelVertices = 512;  // a refrigerator with two doors and handles has 118
 inline constexpr std::size_t kMaxModelTriangles = 1024;
-inline constexpr std::size_t kMaxModelFaces = 256;     // planar surfaces after coplanar triangles are merged
-inline constexpr std::size_t kMaxModelEdges = 256;     // crease edges; also the width of a visibility bit set
-inline constexpr std::size_t kMaxLineSetEdges = 48;    // longest edges, the only ones that found line sets
+inline constexpr std::size_t kMaxModelFaces = 256;   // planar surfaces after coplanar triangles are merged
+inline constexpr std::size_t kMaxModelEdges = 256;   // crease edges; also the width of a visibility bit set
+inline constexpr std::size_t kMaxLineSetEdges = 48;  // longest edges, the only ones that found line sets
 inline constexpr std::size_t kMaxModelLineSets = 2 * kMaxLineSetEdges;  // one parallel, one intersecting per base line
 inline constexpr std::size_t kMaxModelSetMembers = kMaxLineSetEdges * (kMaxLineSetEdges - 1);
 inline constexpr std::size_t kMaxModelSymmetries = 24;  // rotations of a cube, identity included

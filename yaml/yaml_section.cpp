@@ -41,7 +41,7 @@ YAML::Node Parse(const std::filesystem::path& file) {
     return YAML::Load(ReadWhole(file));
   } catch (const YAML::Exception& e) {
     throw YamlError(file.string() + ":" + std::to_string(e.mark.line + 1) + ": not YAML: " + OneLine(e.msg) +
-                     "; correct the line");
+                    "; correct the line");
   }
 }
 

@@ -58,7 +58,8 @@ std::string CameraStream::ChooseFormat(const StreamSettings& settings) {
   if (!layout || !offers(format)) {
     std::string list;
     for (const auto& name : offered) list.append(" ").append(name.toString());
-    return Error("has no 8 bit luma as '" + format + "'; it offers" + list + "; set pixel_format or choose another camera");
+    return Error("has no 8 bit luma as '" + format + "'; it offers" + list +
+                 "; set pixel_format or choose another camera");
   }
   layout_ = *layout;
   stream.pixelFormat = libcamera::PixelFormat::fromString(format);
@@ -68,10 +69,11 @@ std::string CameraStream::ChooseFormat(const StreamSettings& settings) {
   if (status == libcamera::CameraConfiguration::Invalid || stream.pixelFormat.toString() != format ||
       stream.size.width != static_cast<unsigned>(settings.width) ||
       stream.size.height != static_cast<unsigned>(settings.height)) {
-    return Error("cannot give " + std::to_string(settings.width) + "x" + std::to_string(settings.height) + " " + format +
-                 ", the nearest is " + stream.toString() + "; calibrate at a size that it has");
+    return Error("cannot give " + std::to_string(settings.width) + "x" + std::to_string(settings.height) + " " +
+                 format + ", the nearest is " + stream.toString() + "; calibrate at a size that it has");
   }
-  if (camera_->configure(configuration_.get()) != 0) return Error("refuses its own configuration; unplug it and try again");
+  if (camera_->configure(configuration_.get()) != 0)
+    return Error("refuses its own configuration; unplug it and try again");
   stream_ = configuration_->at(0).stream();
   return {};
 }
@@ -86,7 +88,8 @@ std::string CameraStream::MapBuffers() {
     slot.buffer = buffers[i].get();
     if (std::string error = Map(slot); !error.empty()) return error;
     slot.request = camera_->createRequest(i);
-    if (!slot.request || slot.request->addBuffer(stream_, slot.buffer) != 0) return Error("refuses a request; try again");
+    if (!slot.request || slot.request->addBuffer(stream_, slot.buffer) != 0)
+      return Error("refuses a request; try again");
   }
   return {};
 }
@@ -108,7 +111,8 @@ void CameraStream::SetControls(libcamera::ControlList& controls) const {
   namespace ids = libcamera::controls;
   const libcamera::Camera& camera = *camera_;
   if (settings_.exposure_us > 0 && Has(camera, ids::AeEnable)) controls.set(ids::AeEnable, false);
-  if (settings_.exposure_us > 0 && Has(camera, ids::ExposureTime)) controls.set(ids::ExposureTime, settings_.exposure_us);
+  if (settings_.exposure_us > 0 && Has(camera, ids::ExposureTime))
+    controls.set(ids::ExposureTime, settings_.exposure_us);
   if (settings_.gain > 0 && Has(camera, ids::AnalogueGain)) controls.set(ids::AnalogueGain, settings_.gain);
   if (settings_.frame_rate_hz > 0 && Has(camera, ids::FrameDurationLimits)) {
     const auto period_us = static_cast<std::int64_t>(1e6 / settings_.frame_rate_hz);

@@ -11,14 +11,15 @@
 
 namespace wirepose::hal {
 
-inline constexpr std::uint32_t kCameraBuffers = 4;  // of each camera: one exposed, one or two waiting, one or two leased
+inline constexpr std::uint32_t kCameraBuffers =
+    4;  // of each camera: one exposed, one or two waiting, one or two leased
 
 // A frame that one camera has finished.
 struct EyeFrame {
   std::uint32_t slot = 0;      // buffer, below kCameraBuffers
   std::uint32_t sequence = 0;  // the camera's own count, with the frames it lost
   std::chrono::nanoseconds time{0};
-  bool damaged = false;        // the camera says so
+  bool damaged = false;  // the camera says so
 };
 
 struct FramePair {

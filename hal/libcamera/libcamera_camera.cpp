@@ -36,12 +36,14 @@ CameraError LibcameraCamera::DoOpen(StereoCalibration& calibration) {
   if (!rig) return Fail(CameraError::kBadData, rig.error());
   rig_ = calibration = *rig;
   for (Lease& lease : leases_) {
-    for (auto& copy : lease.copy) copy.resize(static_cast<std::size_t>(rig_.width) * static_cast<std::size_t>(rig_.height));
+    for (auto& copy : lease.copy)
+      copy.resize(static_cast<std::size_t>(rig_.width) * static_cast<std::size_t>(rig_.height));
   }
   manager_ = std::make_unique<libcamera::CameraManager>();
   if (manager_->start() != 0) {
     manager_.reset();
-    return Fail(CameraError::kNotFound, "libcamera: does not start; is another program of this machine using all cameras?");
+    return Fail(CameraError::kNotFound,
+                "libcamera: does not start; is another program of this machine using all cameras?");
   }
   const CameraError error = OpenStreams();
   if (error != CameraError::kOk) {
@@ -64,8 +66,9 @@ std::shared_ptr<libcamera::Camera> LibcameraCamera::Find(const std::string& name
     found = camera;
   }
   if (!found) {
-    error = "libcamera: no camera is called '" + name + "'; there is " + (list.empty() ? "none" : list) +
-            "; check the cable, the permissions of /dev/video* and /dev/media*, and camera.libcamera in the configuration";
+    error =
+        "libcamera: no camera is called '" + name + "'; there is " + (list.empty() ? "none" : list) +
+        "; check the cable, the permissions of /dev/video* and /dev/media*, and camera.libcamera in the configuration";
   }
   return found;
 }
@@ -188,7 +191,8 @@ Result<StereoCamera::Captured, CameraError> LibcameraCamera::DoAcquire(std::chro
   const std::lock_guard lock(mutex_);
   if (!pair) {
     lease.taken = false;
-    if (gone_) return unexpected(Fail(CameraError::kDisconnected, "libcamera: a camera was unplugged; plug it in again"));
+    if (gone_)
+      return unexpected(Fail(CameraError::kDisconnected, "libcamera: a camera was unplugged; plug it in again"));
     return unexpected(CameraError::kTimeout);
   }
   lease.pair = *pair;

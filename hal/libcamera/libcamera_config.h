@@ -18,10 +18,10 @@ struct StreamSettings {
 };
 
 struct LibcameraConfig {
-  std::filesystem::path calibration_path;  // calib.yaml of the rig; its size is the size asked for
-  std::string left, right;    // a part of the camera's id or its model that no other camera has
-  bool side_by_side = false;  // `left` names one camera of double width, left image first
-  StreamSettings stream;      // size is set from the calibration
+  std::filesystem::path calibration_path;    // calib.yaml of the rig; its size is the size asked for
+  std::string left, right;                   // a part of the camera's id or its model that no other camera has
+  bool side_by_side = false;                 // `left` names one camera of double width, left image first
+  StreamSettings stream;                     // size is set from the calibration
   std::chrono::microseconds max_skew{2000};  // exposures farther apart are not synchronous
 };
 

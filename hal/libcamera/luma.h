@@ -24,7 +24,7 @@ enum class LumaLayout : std::uint8_t {
 // A buffer as the camera filled it.
 struct LumaSource {
   const std::uint8_t* data = nullptr;
-  std::size_t bytes = 0;  // that the camera wrote
+  std::size_t bytes = 0;                  // that the camera wrote
   int width = 0, height = 0, stride = 0;  // pixels, rows, bytes
   LumaLayout layout = LumaLayout::kPlane;
 };

@@ -10,8 +10,8 @@
 namespace wirepose::hal {
 namespace {
 
-constexpr double kNominalRate = 30;  // Hz, of stamps when frames come as fast as asked for
-constexpr double kMaxRate = 1000;    // Hz
+constexpr double kNominalRate = 30;                        // Hz, of stamps when frames come as fast as asked for
+constexpr double kMaxRate = 1000;                          // Hz
 constexpr std::size_t kMaxPreload = std::size_t{1} << 30;  // bytes
 
 }  // namespace
@@ -107,7 +107,8 @@ CameraError ReplayCamera::Preload() {
   const std::size_t bytes =
       2 * dataset_.frames.size() * static_cast<std::size_t>(rig.width) * static_cast<std::size_t>(rig.height);
   if (bytes > kMaxPreload) {
-    return Fail(CameraError::kUnsupported, config_.root.string() + ": more than 1 GiB of images; leave out preload or name one scene");
+    return Fail(CameraError::kUnsupported,
+                config_.root.string() + ": more than 1 GiB of images; leave out preload or name one scene");
   }
   preloaded_.reserve(2 * dataset_.frames.size());
   for (const dataset::FrameEntry& entry : dataset_.frames) {

@@ -35,7 +35,8 @@ struct ReplayConfig {
 //
 // Four buffers, allocated by Open. Without `preload`, decoding a PNG file allocates temporary
 // memory. Open: kNotFound (no such folder), kBadData (malformed calibration or scene files),
-// kUnsupported (frame rate, too much to preload). AcquireFrame: kTimeout (paced and not due yet), kNoBuffer, kEndOfStream.
+// kUnsupported (frame rate, too much to preload). AcquireFrame: kTimeout (paced and not due yet), kNoBuffer,
+// kEndOfStream.
 class ReplayCamera final : public StereoCamera {
  public:
   static constexpr std::uint32_t kBuffers = 4;

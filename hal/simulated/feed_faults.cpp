@@ -32,7 +32,8 @@ void FlipBits(double share, std::uint64_t seed, dataset::GrayImage& image) {
 // Grease on the lens: blurred and brightened in a disc right of the middle.
 void Smear(dataset::GrayImage& image) {
   const dataset::GrayImage sharp = image;
-  const int radius = image.width / 5, cx = image.width * 3 / 5, cy = image.height / 2, reach = std::max(2, image.width / 64);
+  const int radius = image.width / 5, cx = image.width * 3 / 5, cy = image.height / 2,
+            reach = std::max(2, image.width / 64);
   for (int y = std::max(0, cy - radius); y < std::min(image.height, cy + radius); ++y) {
     for (int x = std::max(0, cx - radius); x < std::min(image.width, cx + radius); ++x) {
       if ((x - cx) * (x - cx) + (y - cy) * (y - cy) > radius * radius) continue;
@@ -44,7 +45,8 @@ void Smear(dataset::GrayImage& image) {
           ++count;
         }
       }
-      image.pixels[static_cast<std::size_t>(y * image.width + x)] = static_cast<std::uint8_t>(std::min(255, sum / count + 20));
+      image.pixels[static_cast<std::size_t>(y * image.width + x)] =
+          static_cast<std::uint8_t>(std::min(255, sum / count + 20));
     }
   }
 }

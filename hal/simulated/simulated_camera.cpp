@@ -210,7 +210,8 @@ class SimulatedCamera::Worker {
       frame.objects.push_back({object.obj_id, object.name, object.T_camera_object, object.visib_fract});
     }
     if (may_keep) {
-      if (const Result<void, std::string> stored = cache_->Store(sequence, frame); !stored) return unexpected(stored.error());
+      if (const Result<void, std::string> stored = cache_->Store(sequence, frame); !stored)
+        return unexpected(stored.error());
     }
     return frame;
   }

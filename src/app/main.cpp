@@ -89,7 +89,8 @@ void Run(const Options& options) {
   const DdsConfig& dds = config.dds;
   const auto opened = g_publisher.Open({dds.bus, dds.frame_id, WIREPOSE_VERSION, dds.pool_bytes});
   if (!opened) throw WorkFailed(opened.error());
-  if (const std::string warning = LockMemory(); !warning.empty()) std::fprintf(stderr, "wireposed: %s\n", warning.c_str());
+  if (const std::string warning = LockMemory(); !warning.empty())
+    std::fprintf(stderr, "wireposed: %s\n", warning.c_str());
   CheckCamera(camera->Start(), *camera);
 
   const std::string status = std::string(camera->name()) + " camera, " + std::to_string(g_recognizer.models().size()) +

@@ -7,8 +7,8 @@
 namespace wirepose::app {
 
 // Locks every page that the process has, with the thread stacks, and where the limit of locked memory allows any size
-// (root, or systemd's LimitMEMLOCK=infinity) those to come. Call it when all is set up. Empty on success, else one line:
-// what failed and what to do; the program works without.
+// (root, or systemd's LimitMEMLOCK=infinity) those to come. Call it when all is set up. Empty on success, else one
+// line: what failed and what to do; the program works without.
 [[nodiscard]] std::string LockMemory();
 
 }  // namespace wirepose::app

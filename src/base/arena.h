@@ -27,8 +27,7 @@ class Arena {
 
   // `bytes` of indeterminate content at a multiple of `alignment` (a power of two); nullptr, and no
   // change but failed_count(), when they do not fit.
-  [[nodiscard]] void* Allocate(std::size_t bytes,
-                               std::size_t alignment = alignof(std::max_align_t)) {
+  [[nodiscard]] void* Allocate(std::size_t bytes, std::size_t alignment = alignof(std::max_align_t)) {
     Check(alignment != 0 && (alignment & (alignment - 1)) == 0);
     const auto address = reinterpret_cast<std::uintptr_t>(storage_.data()) + used_;
     const std::size_t padding = (alignment - address % alignment) % alignment;

@@ -18,9 +18,7 @@ struct BasicImageView {
 
   [[nodiscard]] constexpr T* row(int y) const { return data + y * stride; }
   [[nodiscard]] constexpr T& operator()(int x, int y) const { return data[y * stride + x]; }
-  [[nodiscard]] constexpr bool Contains(int x, int y) const {
-    return x >= 0 && y >= 0 && x < width && y < height;
-  }
+  [[nodiscard]] constexpr bool Contains(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
   constexpr operator BasicImageView<const T>() const { return {data, width, height, stride}; }
 };
 

@@ -38,9 +38,7 @@ class KeepBest {
   void CountDropped(std::uint32_t count) { dropped_ += count; }
 
   // True when `value` would be kept: lets callers skip the work of making it.
-  [[nodiscard]] bool WouldKeep(const T& value) const {
-    return !items_.full() || Better{}(value, items_.front());
-  }
+  [[nodiscard]] bool WouldKeep(const T& value) const { return !items_.full() || Better{}(value, items_.front()); }
 
   // Best first. The collection stays valid only until the next Push. O(n log n).
   FixedVector<T, kCapacity>& Sorted() {

@@ -50,25 +50,17 @@ class MemoryPool {
   // Blocks in use now, free now, and the most ever in use.
   [[nodiscard]] std::size_t count() const { return count_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::size_t space() const { return capacity() - count(); }
-  [[nodiscard]] std::size_t high_water() const {
-    return high_water_.load(std::memory_order_relaxed);
-  }
+  [[nodiscard]] std::size_t high_water() const { return high_water_.load(std::memory_order_relaxed); }
   // Calls of Alloc that found no block.
-  [[nodiscard]] std::uint32_t failed_count() const {
-    return failed_.load(std::memory_order_relaxed);
-  }
+  [[nodiscard]] std::uint32_t failed_count() const { return failed_.load(std::memory_order_relaxed); }
 
  private:
   static constexpr std::uint16_t kNone = 0xFFFF;
   static constexpr std::uint32_t Pack(std::uint16_t index, std::uint16_t tag) {
     return (std::uint32_t{tag} << 16) | index;
   }
-  static constexpr std::uint16_t IndexOf(std::uint32_t head) {
-    return static_cast<std::uint16_t>(head & 0xFFFF);
-  }
-  static constexpr std::uint16_t NextTag(std::uint32_t head) {
-    return static_cast<std::uint16_t>((head >> 16) + 1);
-  }
+  static constexpr std::uint16_t IndexOf(std::uint32_t head) { return static_cast<std::uint16_t>(head & 0xFFFF); }
+  static constexpr std::uint16_t NextTag(std::uint32_t head) { return static_cast<std::uint16_t>((head >> 16) + 1); }
   void RaiseHighWater(std::size_t count);
 
   const std::span<std::byte> storage_;
@@ -87,23 +79,19 @@ struct PoolStorage {
   alignas(kAlignment) std::byte bytes[kBlockBytes * kBlockCount];
   PoolSlot pool_slots[kBlockCount];
 };
-constexpr std::size_t RoundUp(std::size_t n, std::size_t multiple) {
-  return (n + multiple - 1) / multiple * multiple;
-}
+constexpr std::size_t RoundUp(std::size_t n, std::size_t multiple) { return (n + multiple - 1) / multiple * multiple; }
 }  // namespace internal
 
 // A pool with its storage inside: make it static. Blocks are at least `kBlockSize` bytes, aligned
 // to `kAlignment`.
-template <std::size_t kBlockSize, std::size_t kBlockCount,
-          std::size_t kAlignment = alignof(std::max_align_t)>
-class StaticMemoryPool : private internal::PoolStorage<internal::RoundUp(kBlockSize, kAlignment),
-                                                       kBlockCount, kAlignment>,
-                         public MemoryPool {
+template <std::size_t kBlockSize, std::size_t kBlockCount, std::size_t kAlignment = alignof(std::max_align_t)>
+class StaticMemoryPool
+    : private internal::PoolStorage<internal::RoundUp(kBlockSize, kAlignment), kBlockCount, kAlignment>,
+      public MemoryPool {
   static_assert(kBlockSize > 0 && kBlockCount > 0 && kBlockCount <= MemoryPool::kMaxBlocks);
 
  public:
-  StaticMemoryPool()
-      : MemoryPool(this->bytes, this->pool_slots, internal::RoundUp(kBlockSize, kAlignment)) {}
+  StaticMemoryPool() : MemoryPool(this->bytes, this->pool_slots, internal::RoundUp(kBlockSize, kAlignment)) {}
 };
 
 }  // namespace wirepose

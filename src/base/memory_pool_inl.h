@@ -9,15 +9,13 @@
 
 namespace wirepose {
 
-inline MemoryPool::MemoryPool(std::span<std::byte> storage, std::span<PoolSlot> slots,
-                              std::size_t block_size)
+inline MemoryPool::MemoryPool(std::span<std::byte> storage, std::span<PoolSlot> slots, std::size_t block_size)
     : storage_(storage), slots_(slots), block_size_(block_size) {
   Check(block_size > 0 && !slots.empty() && slots.size() <= kMaxBlocks);
   Check(storage.size() / block_size >= slots.size());
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const bool last = i + 1 == slots.size();
-    slots[i].next.store(last ? kNone : static_cast<std::uint16_t>(i + 1),
-                        std::memory_order_relaxed);
+    slots[i].next.store(last ? kNone : static_cast<std::uint16_t>(i + 1), std::memory_order_relaxed);
   }
   head_.store(Pack(0, 0), std::memory_order_release);
 }
@@ -64,8 +62,7 @@ inline PoolStatus MemoryPool::Free(void* block) {
 
 inline void MemoryPool::RaiseHighWater(std::size_t count) {
   std::size_t seen = high_water_.load(std::memory_order_relaxed);
-  while (count > seen &&
-         !high_water_.compare_exchange_weak(seen, count, std::memory_order_relaxed)) {
+  while (count > seen && !high_water_.compare_exchange_weak(seen, count, std::memory_order_relaxed)) {
   }
 }
 

@@ -6,8 +6,8 @@
 
 namespace wirepose {
 
-// The same input spends the same steps on every target, so a search that stops gives the same result everywhere. Searches
-// go from the most to the least promising, so that what is found by then is the best for its price.
+// The same input spends the same steps on every target, so a search that stops gives the same result everywhere.
+// Searches go from the most to the least promising, so that what is found by then is the best for its price.
 class WorkBudget {
  public:
   explicit WorkBudget(std::uint32_t steps) : left_(steps) {}

@@ -15,13 +15,13 @@ enum class LineOwner : std::uint8_t { kBoth, kBright, kDark };
 // Disparity is linear along an image line, so two numbers place it in space. Their covariance is kept in disparity,
 // where it is nearly Gaussian; it grows with depth squared when turned into metres.
 struct Line3 {
-  std::uint16_t id = 0;  // index of its segment in the left image
+  std::uint16_t id = 0;    // index of its segment in the left image
   bool has_depth = false;  // false: only the plane through camera centre and segment is known
   LineOwner owner = LineOwner::kBoth;
-  Segment2 segment;              // left rectified image
-  float disparity_a_px = 0;      // at segment.a; valid when has_depth, as all below
-  float disparity_b_px = 0;      // at segment.b
-  float var_a = 0, var_b = 0, cov_ab = 0;  // px^2, of the two disparities
+  Segment2 segment;                                  // left rectified image
+  float disparity_a_px = 0;                          // at segment.a; valid when has_depth, as all below
+  float disparity_b_px = 0;                          // at segment.b
+  float var_a = 0, var_b = 0, cov_ab = 0;            // px^2, of the two disparities
   Vector3 a = Vector3::Zero(), b = Vector3::Zero();  // end points, rectified left camera frame, m
 
   [[nodiscard]] Vector3 Direction() const { return (b - a).normalized(); }

@@ -36,7 +36,8 @@ inline Matrix3d Skew(const Vector3d& w) {
 }
 
 // Rotation by |w| radians about w (Rodrigues), for |w| up to some thousand rad. A Taylor series, exact to machine
-// precision: |w| is halved until it is below 0.25 rad and the rotation squared back; + - * / only, so every target gives the same bytes.
+// precision: |w| is halved until it is below 0.25 rad and the rotation squared back; + - * / only, so every target
+// gives the same bytes.
 inline Matrix3d ExpSo3(const Vector3d& w) {
   int halvings = 0;
   Vector3d v = w;
@@ -45,8 +46,8 @@ inline Matrix3d ExpSo3(const Vector3d& w) {
     ++halvings;
   }
   const double q = v.squaredNorm();
-  const double a = 1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72)));         // sin|v| / |v|
-  const double b = 0.5 - q / 24 * (1 - q / 30 * (1 - q / 56 * (1 - q / 90)));      // (1 - cos|v|) / |v|^2
+  const double a = 1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72)));     // sin|v| / |v|
+  const double b = 0.5 - q / 24 * (1 - q / 30 * (1 - q / 56 * (1 - q / 90)));  // (1 - cos|v|) / |v|^2
   const Matrix3d W = Skew(v);
   Matrix3d R = Matrix3d::Identity() + a * W + b * W * W;
   for (; halvings > 0; --halvings) R = (R * R).eval();

@@ -29,7 +29,8 @@ void MarkRepresentatives(PreparedModel& model) {
   for (std::size_t e = 0; e < model.edges.size(); ++e) {
     for (std::size_t f = 0; f < e && model.edges[e].representative; ++f) {
       for (std::size_t s = 1; s < model.symmetries.size(); ++s) {
-        if (Carries(model.symmetries[s], model.edges[f], model.edges[e], tolerance)) model.edges[e].representative = false;
+        if (Carries(model.symmetries[s], model.edges[f], model.edges[e], tolerance))
+          model.edges[e].representative = false;
       }
     }
   }
@@ -118,7 +119,8 @@ void PrepareSets(PreparedModel& model) {
       if ((p.base_end == 2) != (q.base_end == 2)) return q.base_end == 2;
       return p.distance_m != q.distance_m ? p.distance_m < q.distance_m : p.other_edge < q.other_edge;
     });
-    const auto corner_end = std::find_if(begin, model.members.end(), [](const PreparedMember& m) { return m.base_end == 2; });
+    const auto corner_end =
+        std::find_if(begin, model.members.end(), [](const PreparedMember& m) { return m.base_end == 2; });
     PreparedSet prepared{set.kind, set.base_edge, static_cast<std::uint16_t>(first),
                          static_cast<std::uint16_t>(corner_end - model.members.begin()),
                          static_cast<std::uint16_t>(model.members.size())};

@@ -24,9 +24,9 @@ struct Detection {
   // Of the twist (rotation [rad], translation [m]) in the camera frame about the model origin: a true pose is
   // exp(rotation) * R, t + translation. Order rx ry rz tx ty tz. Symmetric positive definite.
   Matrix6d covariance = Matrix6d::Identity();
-  float score = 0;             // probability in [0, 1] that object and pose are right
-  float visible_fraction = 0;  // supported length over the length of all edges that face the camera, 0..1
-  std::uint32_t track_id = 0;  // 0: not tracked
+  float score = 0;                         // probability in [0, 1] that object and pose are right
+  float visible_fraction = 0;              // supported length over the length of all edges that face the camera, 0..1
+  std::uint32_t track_id = 0;              // 0: not tracked
   FixedVector<PoseMode, kMaxModes> modes;  // empty: the pose is unambiguous
 };
 

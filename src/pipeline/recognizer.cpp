@@ -25,30 +25,45 @@ bool SeenIn(const ImageRegion& region, const RectificationMap& map, const Vector
 
 const char* StageName(Stage stage) {
   switch (stage) {
-    case Stage::kRectify: return "rectify";
-    case Stage::kSegments: return "segments";
-    case Stage::kStereoLines: return "stereo_lines";
-    case Stage::kLineSets: return "line_sets";
-    case Stage::kCorrespondences: return "correspondences";
-    case Stage::kHypotheses: return "hypotheses";
-    case Stage::kVerify: return "verify";
-    case Stage::kRefine: return "refine";
-    case Stage::kSelect: return "select";
+    case Stage::kRectify:
+      return "rectify";
+    case Stage::kSegments:
+      return "segments";
+    case Stage::kStereoLines:
+      return "stereo_lines";
+    case Stage::kLineSets:
+      return "line_sets";
+    case Stage::kCorrespondences:
+      return "correspondences";
+    case Stage::kHypotheses:
+      return "hypotheses";
+    case Stage::kVerify:
+      return "verify";
+    case Stage::kRefine:
+      return "refine";
+    case Stage::kSelect:
+      return "select";
   }
   return "?";
 }
 
 const char* Describe(RecognizerError error) {
   switch (error) {
-    case RecognizerError::kOk: return "ok";
+    case RecognizerError::kOk:
+      return "ok";
     case RecognizerError::kBadCalibration:
       return "bad calibration: focal lengths and baseline must be positive and R a rotation; calibrate again";
     case RecognizerError::kImageTooLarge:
-      return "calibrated image size is outside 64x64 to 640x480; bin or crop the camera image and calibrate at that size";
-    case RecognizerError::kNotConfigured: return "no calibration; call Configure first";
-    case RecognizerError::kImageSizeMismatch: return "the image is not of the calibrated size";
-    case RecognizerError::kTooManyModels: return "too many models; at most 16 are searched for at once";
-    case RecognizerError::kDuplicateModel: return "two models have the same id; rebuild one with another --id";
+      return "calibrated image size is outside 64x64 to 640x480; bin or crop the camera image and calibrate at that "
+             "size";
+    case RecognizerError::kNotConfigured:
+      return "no calibration; call Configure first";
+    case RecognizerError::kImageSizeMismatch:
+      return "the image is not of the calibrated size";
+    case RecognizerError::kTooManyModels:
+      return "too many models; at most 16 are searched for at once";
+    case RecognizerError::kDuplicateModel:
+      return "two models have the same id; rebuild one with another --id";
   }
   return "?";
 }
@@ -90,7 +105,8 @@ std::span<const Candidate> Recognizer::candidates() const { return candidates_.i
 
 // The flow: frame -> rectified pair -> segments -> 3D lines -> line sets -> (for each model) correspondences ->
 // hypotheses -> promoted sets -> refined, verified poses -> detections.
-RecognizerError Recognizer::Process(ImageView left, ImageView right, StageObserver* observer, RecognitionResult& result) {
+RecognizerError Recognizer::Process(ImageView left, ImageView right, StageObserver* observer,
+                                    RecognitionResult& result) {
   result = {};
   if (!configured_) return RecognizerError::kNotConfigured;
   for (const ImageView& image : {left, right}) {
@@ -142,8 +158,8 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
   NormalizeLocally(View(left_rectified_), left_normalized_);
   NormalizeLocally(View(right_rectified_), right_normalized_);
   Arena arena(stage_scratch_);
-  ComputeDisparityMap(params_.disparity, width, height, left_normalized_, right_normalized_, *arena.Create<DisparityScratch>(),
-                      disparity_);
+  ComputeDisparityMap(params_.disparity, width, height, left_normalized_, right_normalized_,
+                      *arena.Create<DisparityScratch>(), disparity_);
   MatchLines(params_.stereo, {camera(), left_normalized_, right_normalized_, right_smooth_, rectification_.right},
              left_segments_, stereo_scratch_, lines_);
   timer.Done(Stage::kStereoLines);
@@ -173,7 +189,8 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
 
   const SceneEdges scene{camera(), left_edges_, right_edges_};
   const auto& pairs = pairs_.Sorted();
-  const bool all_poses = MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, {pairs.begin(), pairs.end()}, hypotheses_);
+  const bool all_poses =
+      MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, {pairs.begin(), pairs.end()}, hypotheses_);
   result.budget_hit = result.budget_hit || !all_pairs || !all_poses;
   count(result.statistics.hypotheses, hypotheses_.size(), kMaxHypotheses, hypotheses_.dropped());
   const auto& hypotheses = hypotheses_.Sorted();
@@ -195,8 +212,8 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   }
   timer.Done(Stage::kRefine);
 
-  const VerifyInput input{camera(), left_edges_, right_edges_, left_normalized_, right_normalized_,
-                          left_smooth_, right_smooth_, disparity_};
+  const VerifyInput input{camera(),          left_edges_,  right_edges_,  left_normalized_,
+                          right_normalized_, left_smooth_, right_smooth_, disparity_};
   for (Candidate& candidate : refined) {
     GatherEvidence(params_.verify, input, model, candidate.pose.T_camera_model, verify_scratch_, candidate.evidence);
     candidate.score = ScoreOf(params_.select.score, candidate.evidence);
@@ -208,16 +225,16 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
 // The last of the adjustment, with more samples and iterations; what it cannot improve stays.
 void Recognizer::Polish(Candidate& candidate) {
   RefinedPose polished;
-  RefinePose(params_.polish, {camera(), left_smooth_, right_smooth_}, models_[candidate.model], candidate.pose.T_camera_model,
-             refine_scratch_, polished);
+  RefinePose(params_.polish, {camera(), left_smooth_, right_smooth_}, models_[candidate.model],
+             candidate.pose.T_camera_model, refine_scratch_, polished);
   if (polished.ok) candidate.pose = polished;
 }
 
 void Recognizer::Report(RecognitionResult& result) {
   auto& candidates = candidates_.Sorted();
   std::uint32_t dropped = 0;
-  SelectDetections(params_.select, camera(), left_edges_, {models_.begin(), models_.end()}, {candidates.begin(), candidates.end()},
-                   verify_scratch_, claims_, accepted_, dropped);
+  SelectDetections(params_.select, camera(), left_edges_, {models_.begin(), models_.end()},
+                   {candidates.begin(), candidates.end()}, verify_scratch_, claims_, accepted_, dropped);
   // Results are given in the raw left camera's frame.
   const Pose T_raw_rectified = T_rectified_raw().Inverse();
   Matrix6d turn = Matrix6d::Zero();

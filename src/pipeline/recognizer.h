@@ -31,14 +31,14 @@
 
 namespace wirepose {
 
-enum class [[nodiscard]] RecognizerError : std::uint8_t {
-  kOk,
-  kBadCalibration,   // a focal length or baseline that is not positive, a rotation that is none, distortion too strong
-  kImageTooLarge,    // the calibration's image exceeds kMaxImageWidth x kMaxImageHeight or is smaller than 64 x 64
-  kNotConfigured,    // Process before Configure
-  kImageSizeMismatch,  // an image that is not of the calibrated size
-  kTooManyModels,    // more than kMaxModels
-  kDuplicateModel,   // two models of one id
+enum class [[nodiscard]] RecognizerError : std::uint8_t{
+    kOk,
+    kBadCalibration,  // a focal length or baseline that is not positive, a rotation that is none, distortion too strong
+    kImageTooLarge,   // the calibration's image exceeds kMaxImageWidth x kMaxImageHeight or is smaller than 64 x 64
+    kNotConfigured,   // Process before Configure
+    kImageSizeMismatch,  // an image that is not of the calibrated size
+    kTooManyModels,      // more than kMaxModels
+    kDuplicateModel,     // two models of one id
 };
 
 // One line for people: what is wrong and what to do.
@@ -108,8 +108,8 @@ class Recognizer {
   // model's bit.
   void SearchFor(std::uint32_t model_bits) { searched_ = model_bits; }
   [[nodiscard]] std::uint32_t searched() const { return searched_; }
-  // Restricts the following frames to objects that show at least one line in the region: only left segments whose middle
-  // lies in it are used for matching. Evidence for and against a pose comes from the whole image as before.
+  // Restricts the following frames to objects that show at least one line in the region: only left segments whose
+  // middle lies in it are used for matching. Evidence for and against a pose comes from the whole image as before.
   void SetRegion(const ImageRegion& region) { region_ = region; }
   [[nodiscard]] const ImageRegion& region() const { return region_; }
 
@@ -125,8 +125,12 @@ class Recognizer {
   [[nodiscard]] ImageView left_rectified() const { return View(left_rectified_); }
   [[nodiscard]] ImageView right_rectified() const { return View(right_rectified_); }
   [[nodiscard]] const DisparityMap& disparity_map() const { return disparity_; }
-  [[nodiscard]] std::span<const Segment2> left_segments() const { return {left_segments_.items.begin(), left_segments_.items.end()}; }
-  [[nodiscard]] std::span<const Segment2> right_segments() const { return {right_segments_.items.begin(), right_segments_.items.end()}; }
+  [[nodiscard]] std::span<const Segment2> left_segments() const {
+    return {left_segments_.items.begin(), left_segments_.items.end()};
+  }
+  [[nodiscard]] std::span<const Segment2> right_segments() const {
+    return {right_segments_.items.begin(), right_segments_.items.end()};
+  }
   [[nodiscard]] std::span<const Line3> lines() const { return {lines_.begin(), lines_.end()}; }
   [[nodiscard]] const ImageLineSets& line_sets() const { return line_sets_; }
   // Of the model at hand, during StageDone(kCorrespondences), in no particular order.
@@ -151,7 +155,8 @@ class Recognizer {
   void KeepSegmentsInRegion();
   void FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics);
   void MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result);
-  void FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map, Segments& segments);
+  void FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
+                 Segments& segments);
   void Polish(Candidate& candidate);
   void Report(RecognitionResult& result);
 
@@ -184,8 +189,8 @@ class Recognizer {
   SegmentScratch segment_scratch_;
   StereoScratch stereo_scratch_;
   // Of the stage at work: an eye's edge image, then the rows of the disparity map.
-  alignas(EdgeImage) alignas(DisparityScratch)
-      std::array<std::byte, std::max(sizeof(EdgeImage), sizeof(DisparityScratch))> stage_scratch_;
+  alignas(EdgeImage) alignas(
+      DisparityScratch) std::array<std::byte, std::max(sizeof(EdgeImage), sizeof(DisparityScratch))> stage_scratch_;
   RefineScratch refine_scratch_;
   VerifyScratch verify_scratch_;
   ClaimMap claims_;

@@ -14,7 +14,13 @@ class Matcher {
  public:
   Matcher(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
           const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out)
-      : params_(params), camera_(camera), model_(model), lines_(lines), sets_(sets), out_(out), budget_(params.max_steps) {
+      : params_(params),
+        camera_(camera),
+        model_(model),
+        lines_(lines),
+        sets_(sets),
+        out_(out),
+        budget_(params.max_steps) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (lines[i].has_depth) slack_[i] = SlackOf(lines[i]);
     }
@@ -77,7 +83,8 @@ class Matcher {
     MatchRange(set, set.corner_end, set.end, low, high, pair);
   }
 
-  void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, float low, float high, const ImageLinePair& pair) {
+  void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, float low, float high,
+                  const ImageLinePair& pair) {
     const PreparedMember* members = model_.members.data();
     const PreparedMember* from = std::lower_bound(
         members + begin, members + end, low, [](const PreparedMember& m, float value) { return m.distance_m < value; });
@@ -87,7 +94,8 @@ class Matcher {
   }
 
   [[nodiscard]] bool MetricAgrees(const ImageLinePair& pair, const PreparedMember& member) const {
-    if (std::abs(pair.angle_rad - member.angle_rad) > params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad) {
+    if (std::abs(pair.angle_rad - member.angle_rad) >
+        params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad) {
       return false;
     }
     const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;

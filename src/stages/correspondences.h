@@ -11,7 +11,7 @@
 namespace wirepose {
 
 struct CorrespondenceParams {
-  float sigmas = 2.5F;           // how many of its own standard deviations an image value may be off
+  float sigmas = 2.5F;             // how many of its own standard deviations an image value may be off
   float length_tolerance = 0.06F;  // stereo and model scale may disagree by this share
   float end_tolerance_m = 0.006F;
   float angle_tolerance_rad = 0.06F;
@@ -22,7 +22,8 @@ struct CorrespondenceParams {
   float cover_gain = 2.0F;       // rank of a line that shows its whole edge
   float junction_gain = 1.0F;    // rank of an image junction that is the model corner
   float no_depth_loss = 2.0F;    // rank given up by a pair whose V is not known
-  // Members compared with image pairs, for one model in one frame: bounds the time. Simulated kitchens need up to 280,000.
+  // Members compared with image pairs, for one model in one frame: bounds the time. Simulated kitchens need up to
+  // 280,000.
   std::uint32_t max_steps = 600'000;
 };
 
@@ -33,7 +34,7 @@ struct CorrespondingPair {
   std::uint16_t other_edge = 0;
   std::uint8_t base_flipped = 0;  // 1: the edge runs against its image line
   std::uint8_t junction = 0;      // 1: the image junction is the model corner that both edges share
-  float rank = 0;  // log-likelihood up to a constant: more is better
+  float rank = 0;                 // log-likelihood up to a constant: more is better
 };
 
 struct BetterPair {
@@ -49,10 +50,10 @@ using CorrespondingPairs = KeepBest<CorrespondingPair, kMaxCorrespondences, Bett
 
 // Every image pair whose parameter vector agrees with that of a model pair. Lengths are unreliable: a segment may be
 // any part of its edge that is not too short, but it cannot be longer. Symmetric models are searched from one edge of
-// each symmetry orbit. Pairs are ranked by the Gaussian likelihood of V under its own sigma, so that a precise agreement
-// beats a vague one, by length and cover of the lines, and by how many other lines fit the same assignment of the base.
-// O(pairs * representative base edges * members), at most `max_steps`: base lines come by falling length, and those for
-// which no steps are left are not searched. Returns false when that happened.
+// each symmetry orbit. Pairs are ranked by the Gaussian likelihood of V under its own sigma, so that a precise
+// agreement beats a vague one, by length and cover of the lines, and by how many other lines fit the same assignment of
+// the base. O(pairs * representative base edges * members), at most `max_steps`: base lines come by falling length, and
+// those for which no steps are left are not searched. Returns false when that happened.
 bool FindCorrespondences(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                          const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out);
 

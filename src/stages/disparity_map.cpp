@@ -16,7 +16,8 @@ void HalveRow(const NormalizedPlane& plane, int j, int width, Scratch::Row& out)
   const std::uint8_t* a = plane.data() + static_cast<std::ptrdiff_t>(2 * j) * kMaxImageWidth;
   const std::uint8_t* b = a + kMaxImageWidth;
   for (int i = 0; i < width; ++i) {
-    out[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>((a[2 * i] + a[2 * i + 1] + b[2 * i] + b[2 * i + 1] + 2) / 4);
+    out[static_cast<std::size_t>(i)] =
+        static_cast<std::uint8_t>((a[2 * i] + a[2 * i + 1] + b[2 * i] + b[2 * i + 1] + 2) / 4);
   }
 }
 
@@ -57,8 +58,8 @@ struct Steps {
 
 // One step of a path: L(d) = C(d) + min(L'(d), L'(d +- 1) + small, min L' + large) - min L'. Adds L to `sum`, writes it
 // to `out` (guards stay) and returns its minimum. `previous` and `out` point at disparity 0 behind the guard.
-inline std::uint16_t Advance(const std::uint16_t* cost, const std::uint16_t* previous, std::uint16_t lowest, Steps steps,
-                             std::uint16_t* out, std::uint16_t* sum) {
+inline std::uint16_t Advance(const std::uint16_t* cost, const std::uint16_t* previous, std::uint16_t lowest,
+                             Steps steps, std::uint16_t* out, std::uint16_t* sum) {
   const auto limit = static_cast<std::uint16_t>(lowest + steps.large);
   std::uint16_t least = 0xFFFF;
   for (int d = 0; d < kDepth; ++d) {
@@ -99,8 +100,8 @@ WIREPOSE_VECTOR_KERNEL void SumPaths(Steps steps, int width, std::size_t parity,
   Reset(path[1]);
   lowest = 0;
   for (int x = width - 1; x >= 0; --x) {
-    lowest = Advance(scratch.cost.data() + x * kDepth, path[x % 2].data() + 1, lowest, steps, path[(x + 1) % 2].data() + 1,
-                     scratch.sum.data() + x * kDepth);
+    lowest = Advance(scratch.cost.data() + x * kDepth, path[x % 2].data() + 1, lowest, steps,
+                     path[(x + 1) % 2].data() + 1, scratch.sum.data() + x * kDepth);
   }
 }
 
@@ -165,7 +166,9 @@ void WriteRow(int max_asymmetry, int width, const Scratch& scratch, std::uint16_
 // A pixel that fewer than two of its four neighbours confirm is unknown.
 void DropSpeckles(const DisparityMap& raw, int j, std::uint16_t* out) {
   constexpr int kTolerance = static_cast<int>(2 * DisparityMap::kOne);
-  const auto at = [&](int x, int y) { return int{raw.disparity[static_cast<std::size_t>(y * DisparityMap::kMaxWidth + x)]}; };
+  const auto at = [&](int x, int y) {
+    return int{raw.disparity[static_cast<std::size_t>(y * DisparityMap::kMaxWidth + x)]};
+  };
   for (int x = 0; x < raw.width; ++x) {
     const int here = at(x, j);
     int confirmed = 0;
@@ -201,7 +204,9 @@ void ComputeDisparityMap(const DisparityMapParams& params, int width, int height
   DisparityMap& raw = scratch.raw;
   raw.width = out.width;
   raw.height = out.height;
-  const auto row = [&](int j) { return scratch.difference[static_cast<std::size_t>(std::clamp(j, 0, out.height - 1) % 3)].data(); };
+  const auto row = [&](int j) {
+    return scratch.difference[static_cast<std::size_t>(std::clamp(j, 0, out.height - 1) % 3)].data();
+  };
   for (int j = 0; j < std::min(2, out.height); ++j) ReadDifferences(params, left, right, j, out.width, scratch);
   for (int j = 0; j < out.height; ++j) {
     SumRows(row(j - 1), row(j), row(j + 1), out.width * kDepth, scratch.column.data());
@@ -209,7 +214,8 @@ void ComputeDisparityMap(const DisparityMapParams& params, int width, int height
     if (j + 2 < out.height) ReadDifferences(params, left, right, j + 2, out.width, scratch);
     SumPaths({params.small_step, params.large_step}, out.width, static_cast<std::size_t>(j % 2), scratch);
     ChooseBest(out.width, scratch);
-    WriteRow(params.max_asymmetry, out.width, scratch, raw.disparity.data() + static_cast<std::ptrdiff_t>(j) * DisparityMap::kMaxWidth);
+    WriteRow(params.max_asymmetry, out.width, scratch,
+             raw.disparity.data() + static_cast<std::ptrdiff_t>(j) * DisparityMap::kMaxWidth);
   }
   for (int j = 0; j < out.height; ++j) {
     DropSpeckles(raw, j, out.disparity.data() + static_cast<std::ptrdiff_t>(j) * DisparityMap::kMaxWidth);

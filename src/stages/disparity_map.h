@@ -14,10 +14,10 @@ namespace wirepose {
 struct DisparityMap {
   static constexpr int kScale = 2;
   static constexpr int kMaxWidth = kMaxImageWidth / kScale, kMaxHeight = kMaxImageHeight / kScale;
-  static constexpr float kOne = 8;            // stored units a pixel
+  static constexpr float kOne = 8;              // stored units a pixel
   static constexpr std::uint16_t kUnknown = 0;  // unconfirmed, or hidden in the right image
 
-  int width = 0, height = 0;  // of the map: the image's halved
+  int width = 0, height = 0;                                                 // of the map: the image's halved
   std::array<std::uint16_t, std::size_t{kMaxWidth} * kMaxHeight> disparity;  // kOne a pixel of the full image
 
   // Disparity [px of the full image] at full image coordinates inside the image; 0 where unknown.
@@ -32,7 +32,7 @@ struct DisparityMapParams {
   std::uint16_t small_step = 180;  // cost of a change by one between neighbours, beside sums of 3 x 3 differences ...
   std::uint16_t large_step = 700;  // ... and of any larger change
   std::uint16_t max_difference = 96;  // of two normalised values: more says no more
-  int max_asymmetry = 1;           // between the maps of both images, half pixels
+  int max_asymmetry = 1;              // between the maps of both images, half pixels
 };
 
 inline constexpr int kMapDisparities = 80;  // half pixels: surfaces from 0.4 m at f*B = 63 px*m
@@ -44,9 +44,9 @@ struct DisparityScratch {
   using Path = std::array<std::uint16_t, kDepth + 2>;  // a guard before the first disparity and after the last
 
   std::array<std::array<std::uint8_t, std::size_t{kWidth} * kDepth>, 3> difference;  // of three rows of pixels
-  std::array<std::uint16_t, std::size_t{kWidth} * kDepth> column;  // their sum
-  std::array<std::uint16_t, std::size_t{kWidth} * kDepth> cost;    // summed over 3 x 3 pixels
-  std::array<std::uint16_t, std::size_t{kWidth} * kDepth> sum;     // over the paths
+  std::array<std::uint16_t, std::size_t{kWidth} * kDepth> column;                    // their sum
+  std::array<std::uint16_t, std::size_t{kWidth} * kDepth> cost;                      // summed over 3 x 3 pixels
+  std::array<std::uint16_t, std::size_t{kWidth} * kDepth> sum;                       // over the paths
   std::array<std::array<Path, kWidth>, 2> above;  // path costs from above, of this row and the one before
   std::array<std::uint16_t, kWidth> above_lowest;
   std::array<std::array<std::uint16_t, kWidth>, 2> best_right;  // lowest cost and its disparity in the right image
@@ -54,8 +54,8 @@ struct DisparityScratch {
   DisparityMap raw;  // before speckles are dropped
 };
 
-// Semi-global matching (Hirschmueller 2008) at half resolution on locally normalised images, along three paths (from the
-// left, from the right, from above), so that a few rows of memory suffice; matches that the right image or the
+// Semi-global matching (Hirschmueller 2008) at half resolution on locally normalised images, along three paths (from
+// the left, from the right, from above), so that a few rows of memory suffice; matches that the right image or the
 // neighbours do not confirm are unknown. Integers only. O(pixels / 4 * kMapDisparities * 3).
 void ComputeDisparityMap(const DisparityMapParams& params, int width, int height, const NormalizedPlane& left,
                          const NormalizedPlane& right, DisparityScratch& scratch, DisparityMap& out);

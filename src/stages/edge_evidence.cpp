@@ -79,7 +79,8 @@ void CollectPeaks(const EdgeProfile& profile, float threshold, Peaks& peaks) {
 
 class Gatherer {
  public:
-  Gatherer(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model, const Vector3& eye, Evidence& out)
+  Gatherer(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model, const Vector3& eye,
+           Evidence& out)
       : params_(params), in_(input), model_(model), eye_(eye), out_(out) {}
 
   void Run(const EdgeSamples& samples) {
@@ -122,7 +123,8 @@ class Gatherer {
     if (!left_.Read(in_.left_smooth, in_.camera.width, in_.camera.height, s.left, normal, kRange)) return false;
     const Vector2 right_at(s.left.x() - s.disparity, s.left.y());
     const Vector2 right_normal(-s.tangent_right.y(), s.tangent_right.x());
-    const bool right = right_.Read(in_.right_smooth, in_.camera.width, in_.camera.height, right_at, right_normal, kRange);
+    const bool right =
+        right_.Read(in_.right_smooth, in_.camera.width, in_.camera.height, right_at, right_normal, kRange);
     piece_.Add(left_, right ? &right_ : nullptr, s.weight_px);
     CollectPeaks(left_, in_.left_edges.threshold, left_peaks_);
     right_peaks_.clear();
@@ -163,7 +165,8 @@ class Gatherer {
 
   [[nodiscard]] float LogRatio(const EdgeSupport& e) const {
     if (e.samples < 1) return 0;
-    // An edge of one direction within 2 px is what the edge map counts; equal polarity and offset in both images are rarer.
+    // An edge of one direction within 2 px is what the edge map counts; equal polarity and offset in both images are
+    // rarer.
     const float chance = std::clamp(0.7F * in_.left_edges.background, 0.03F, 0.4F);
     const float weight = e.length_px / (e.samples * params_.independent_px);
     return weight * (e.hits * Log(params_.support_rate / chance) +

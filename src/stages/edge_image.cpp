@@ -69,11 +69,14 @@ WIREPOSE_VECTOR_KERNEL void MarkRidges(const EdgeImage& image, int y, int begin,
   const std::int16_t* gy = image.gy.data() + row;
   const std::uint16_t* here = image.magnitude.data() + row;
   // Sixteen bits until the end: lanes of one width.
-  constexpr std::uint16_t kNone = 0, kAcrossX = static_cast<std::uint16_t>(Ridge::kAcrossX), kAcrossY = static_cast<std::uint16_t>(Ridge::kAcrossY);
+  constexpr std::uint16_t kNone = 0, kAcrossX = static_cast<std::uint16_t>(Ridge::kAcrossX),
+                          kAcrossY = static_cast<std::uint16_t>(Ridge::kAcrossY);
   std::array<std::uint16_t, kMaxImageWidth> kinds;
   for (int x = begin; x < end; ++x) {
-    const auto ax = static_cast<std::int16_t>(std::abs(int{gx[x]})), ay = static_cast<std::int16_t>(std::abs(int{gy[x]}));
-    const std::uint16_t m = here[x], left = here[x - 1], right = here[x + 1], above = here[x - kStride], below = here[x + kStride];
+    const auto ax = static_cast<std::int16_t>(std::abs(int{gx[x]})),
+               ay = static_cast<std::int16_t>(std::abs(int{gy[x]}));
+    const std::uint16_t m = here[x], left = here[x - 1], right = here[x + 1], above = here[x - kStride],
+                        below = here[x + kStride];
     // Without && nothing branches, and the loop vectorizes.
     const std::uint16_t by_x = static_cast<std::uint16_t>((m > left) & (m >= right)) * kAcrossX;
     const std::uint16_t by_y = static_cast<std::uint16_t>((m > above) & (m >= below)) * kAcrossY;
@@ -86,7 +89,9 @@ WIREPOSE_VECTOR_KERNEL void MarkRidges(const EdgeImage& image, int y, int begin,
 // Counting sort of the collected ridge pixels by falling magnitude, stable in the order of rows.
 void SortRidges(EdgeImage& image) {
   std::array<std::uint32_t, kLastBucket + 1> start{};
-  const auto bucket = [&](std::uint32_t i) { return kLastBucket - std::min<std::size_t>(image.magnitude[i] / 16, kLastBucket); };
+  const auto bucket = [&](std::uint32_t i) {
+    return kLastBucket - std::min<std::size_t>(image.magnitude[i] / 16, kLastBucket);
+  };
   for (std::uint32_t k = 0; k < image.ridge_count; ++k) ++start[bucket(image.found[k])];
   std::uint32_t sum = 0;
   for (std::uint32_t& s : start) {
@@ -94,7 +99,8 @@ void SortRidges(EdgeImage& image) {
     s = sum;
     sum += count;
   }
-  for (std::uint32_t k = 0; k < image.ridge_count; ++k) image.ridge_pixels[start[bucket(image.found[k])]++] = image.found[k];
+  for (std::uint32_t k = 0; k < image.ridge_count; ++k)
+    image.ridge_pixels[start[bucket(image.found[k])]++] = image.found[k];
 }
 
 std::size_t BucketOf(std::uint16_t magnitude) { return std::min<std::size_t>(magnitude / 16, kLastBucket); }

@@ -29,9 +29,9 @@ enum class Ridge : std::uint8_t { kNone = 0, kAcrossX = 1, kAcrossY = 2 };
 // Planes of one image at stride kMaxImageWidth. 2.6 MB; the pipeline keeps one and reuses it for both eyes.
 struct EdgeImage {
   int width = 0, height = 0;
-  std::array<std::int16_t, kMaxPixels> gx, gy;     // kGradientOne
-  std::array<std::uint16_t, kMaxPixels> magnitude;  // kGradientOne
-  std::array<std::uint8_t, kMaxPixels> ridge;       // Ridge
+  std::array<std::int16_t, kMaxPixels> gx, gy;              // kGradientOne
+  std::array<std::uint16_t, kMaxPixels> magnitude;          // kGradientOne
+  std::array<std::uint8_t, kMaxPixels> ridge;               // Ridge
   std::array<std::uint32_t, kMaxRidgePixels> ridge_pixels;  // by falling magnitude
   std::array<std::uint32_t, kMaxRidgePixels> found;         // work space: the same in the order of rows
   std::uint32_t ridge_count = 0;

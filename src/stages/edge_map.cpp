@@ -8,7 +8,9 @@ namespace wirepose {
 namespace {
 
 std::uint16_t DirectionAndNeighbours(int direction) {
-  const auto rotate = [](int d) { return static_cast<std::uint16_t>(1U << ((d + EdgeMap::kDirections) % EdgeMap::kDirections)); };
+  const auto rotate = [](int d) {
+    return static_cast<std::uint16_t>(1U << ((d + EdgeMap::kDirections) % EdgeMap::kDirections));
+  };
   return static_cast<std::uint16_t>(rotate(direction - 1) | rotate(direction) | rotate(direction + 1));
 }
 
@@ -18,14 +20,15 @@ void BuildEdgeMap(const EdgeImage& edges, EdgeMap& out) {
   out.width = edges.width;
   out.height = edges.height;
   out.threshold = static_cast<float>(edges.threshold);
-  std::fill(out.directions.begin(), out.directions.begin() + static_cast<std::ptrdiff_t>(EdgeImage::Index(0, edges.height)),
-            std::uint16_t{0});
-  // A disc of radius 2 around each ridge pixel: rows of 5 pixels, the outer ones of 4. Ridges keep 3 pixels from the border.
+  std::fill(out.directions.begin(),
+            out.directions.begin() + static_cast<std::ptrdiff_t>(EdgeImage::Index(0, edges.height)), std::uint16_t{0});
+  // A disc of radius 2 around each ridge pixel: rows of 5 pixels, the outer ones of 4. Ridges keep 3 pixels from the
+  // border.
   for (std::uint32_t k = 0; k < edges.ridge_count; ++k) {
     const std::uint32_t i = edges.ridge_pixels[k];
     // The edge runs across its gradient.
-    const std::uint16_t bits = DirectionAndNeighbours(
-        EdgeMap::Direction(static_cast<float>(-edges.gy[i]), static_cast<float>(edges.gx[i])));
+    const std::uint16_t bits =
+        DirectionAndNeighbours(EdgeMap::Direction(static_cast<float>(-edges.gy[i]), static_cast<float>(edges.gx[i])));
     // Four pixels at a time: the pattern is the same in each 16 bit lane, so byte order does not matter.
     const std::uint64_t four = bits * 0x0001000100010001ULL;
     std::uint16_t* centre = out.directions.data() + i;

@@ -28,7 +28,8 @@ struct EdgeMap {
     const bool steep = ay > ax;
     const float low = steep ? ax : ay;
     const float high = steep ? ay : ax;
-    const int sector = (low > 0.19891237F * high ? 1 : 0) + (low > 0.41421356F * high ? 1 : 0) + (low > 0.66817864F * high ? 1 : 0);
+    const int sector =
+        (low > 0.19891237F * high ? 1 : 0) + (low > 0.41421356F * high ? 1 : 0) + (low > 0.66817864F * high ? 1 : 0);
     const int first_quadrant = steep ? 7 - sector : sector;  // 0..7 counts 11.25 degrees from the x axis
     return (dx >= 0) == (dy >= 0) ? first_quadrant : kDirections - 1 - first_quadrant;
   }

@@ -2,7 +2,8 @@
 
 namespace wirepose {
 
-bool EdgeProfile::Read(const SmoothPlane& plane, int width, int height, const Vector2& p, const Vector2& normal, int range) {
+bool EdgeProfile::Read(const SmoothPlane& plane, int width, int height, const Vector2& p, const Vector2& normal,
+                       int range) {
   middle_ = range + 2;
   count_ = 2 * middle_ + 1;
   const auto reach = static_cast<float>(middle_);

@@ -33,9 +33,16 @@ class HypothesisMaker {
  public:
   HypothesisMaker(const HypothesisParams& params, const SceneEdges& scene, const PreparedModel& model,
                   const Lines3& lines, Hypotheses& out)
-      : params_(params), scene_(scene), model_(model), lines_(lines), out_(out), scorer_(params.score, scene, model),
-        f_(static_cast<float>(scene.camera.f)), cx_(static_cast<float>(scene.camera.cx)),
-        cy_(static_cast<float>(scene.camera.cy)), budget_(params.max_steps) {}
+      : params_(params),
+        scene_(scene),
+        model_(model),
+        lines_(lines),
+        out_(out),
+        scorer_(params.score, scene, model),
+        f_(static_cast<float>(scene.camera.f)),
+        cx_(static_cast<float>(scene.camera.cx)),
+        cy_(static_cast<float>(scene.camera.cy)),
+        budget_(params.max_steps) {}
 
   [[nodiscard]] bool budget_hit() const { return budget_.hit(); }
 

@@ -10,11 +10,11 @@
 namespace wirepose {
 
 struct HypothesisParams {
-  float end_tolerance_px = 5;      // a segment may overrun its projected edge by this much ...
-  float end_tolerance_share = 0.08F;  // ... or by this share of it
+  float end_tolerance_px = 5;             // a segment may overrun its projected edge by this much ...
+  float end_tolerance_share = 0.08F;      // ... or by this share of it
   float direction_tolerance_rad = 0.15F;  // between the solved and the measured direction of the other line
   float length_angle_tolerance = 0.2F;    // cosine error up to which a direction solved from a length is believed
-  float min_depth_m = 0.15F;       // of the object's centre
+  float min_depth_m = 0.15F;              // of the object's centre
   PoseScoreParams score;
   // Poses scored, for one model in one frame: bounds the time. Simulated kitchens need up to 1,100.
   std::uint32_t max_steps = 2'000;

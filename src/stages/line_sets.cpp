@@ -17,8 +17,8 @@ float DistanceOfLines(const Line3& p, const Line3& q, float sine) {
 }
 
 float FarthestEnds(const Line3& p, const Line3& q) {
-  const float squared = std::max({(p.a - q.a).squaredNorm(), (p.a - q.b).squaredNorm(), (p.b - q.a).squaredNorm(),
-                                  (p.b - q.b).squaredNorm()});
+  const float squared = std::max(
+      {(p.a - q.a).squaredNorm(), (p.a - q.b).squaredNorm(), (p.b - q.a).squaredNorm(), (p.b - q.b).squaredNorm()});
   return std::sqrt(squared);
 }
 
@@ -62,7 +62,8 @@ class PairMaker {
   // No pair of these two lines has a higher quality: the joint sigmas are at least the larger ones.
   [[nodiscard]] float QualityBound(std::size_t b, std::size_t o) const {
     float bound = log_length_[b] + log_length_[o] + params_.junction_quality;
-    if (lines_[o].has_depth) bound -= std::max(log_angle_[b], log_angle_[o]) + std::max(log_distance_[b], log_distance_[o]);
+    if (lines_[o].has_depth)
+      bound -= std::max(log_angle_[b], log_angle_[o]) + std::max(log_distance_[b], log_distance_[o]);
     return bound;
   }
 
@@ -74,7 +75,8 @@ class PairMaker {
     pair.base = static_cast<std::uint16_t>(b);
     pair.other = static_cast<std::uint16_t>(o);
     const float ends = NearestEnds(base.segment, other.segment, pair.base_end, pair.other_end);
-    const float reach = std::min(params_.junction_px, 4 + 0.3F * std::min(base.segment.Length(), other.segment.Length()));
+    const float reach =
+        std::min(params_.junction_px, 4 + 0.3F * std::min(base.segment.Length(), other.segment.Length()));
     const bool junction = ends < reach && ImageSine(base.segment, other.segment) > 0.2F;
     if (!junction) pair.base_end = pair.other_end = LineEnd::kNone;
     pair.quality = log_length_[b] + log_length_[o] + (junction ? params_.junction_quality : 0.0F);
@@ -94,8 +96,10 @@ class PairMaker {
     const float cosine = std::abs(u.dot(v));
     // atan2 of non-negative numbers by the rational approximation below: good to 0.005 rad, far below any sigma here.
     pair.angle_rad = Angle(sine, cosine);
-    pair.angle_sigma_rad = std::sqrt(direction_sigma_[b] * direction_sigma_[b] + direction_sigma_[o] * direction_sigma_[o]);
-    pair.kind = pair.angle_rad < params_.parallel_rad + pair.angle_sigma_rad ? LineSetKind::kParallel : LineSetKind::kIntersecting;
+    pair.angle_sigma_rad =
+        std::sqrt(direction_sigma_[b] * direction_sigma_[b] + direction_sigma_[o] * direction_sigma_[o]);
+    pair.kind = pair.angle_rad < params_.parallel_rad + pair.angle_sigma_rad ? LineSetKind::kParallel
+                                                                             : LineSetKind::kIntersecting;
     pair.distance_m = DistanceOfLines(base, other, sine);
     pair.distance_sigma_m = std::sqrt(depth_sigma_[b] * depth_sigma_[b] + depth_sigma_[o] * depth_sigma_[o]);
     // Normalisation of the two Gaussians that V is compared with, relative to a rad of 1 and a distance of 1 cm.
@@ -123,7 +127,8 @@ void GroupByBase(std::size_t line_count, ImageLineSets& out) {
   const auto& kept = out.kept.Sorted();
   out.first.fill(0);
   for (const ImageLinePair& pair : kept) ++out.first[pair.base + 1U];
-  for (std::size_t b = 0; b < line_count; ++b) out.first[b + 1] = static_cast<std::uint16_t>(out.first[b + 1] + out.first[b]);
+  for (std::size_t b = 0; b < line_count; ++b)
+    out.first[b + 1] = static_cast<std::uint16_t>(out.first[b + 1] + out.first[b]);
   out.pairs.resize(kept.size());
   std::array<std::uint16_t, kMaxSegments> next;
   std::copy(out.first.begin(), out.first.end() - 1, next.begin());
@@ -144,7 +149,8 @@ float DirectionSigma(const RectifiedCamera& camera, const Line3& line) {
   const double depth_difference = z * z / (camera.f * camera.baseline) * std::sqrt(std::max(variance, 0.0));
   // Of the part of the direction across the line of sight; what turns out of the image plane is what depth turns.
   const double length = std::max(1e-4, static_cast<double>(line.Length()));
-  return static_cast<float>(std::min(1.5, depth_difference / length + static_cast<double>(line.segment.sigma_angle_rad)));
+  return static_cast<float>(
+      std::min(1.5, depth_difference / length + static_cast<double>(line.segment.sigma_angle_rad)));
 }
 
 void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines, ImageLineSets& out) {

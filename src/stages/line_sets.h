@@ -13,9 +13,9 @@
 namespace wirepose {
 
 struct LineSetParams {
-  float junction_px = 14;       // end points nearer than this in the image form a junction
-  float parallel_rad = 0.18F;   // delta_phi: lines closer in direction than this plus their sigmas are parallel
-  float max_reach_m = 2.0F;     // lines farther apart belong to no common object; set to the largest model diameter
+  float junction_px = 14;          // end points nearer than this in the image form a junction
+  float parallel_rad = 0.18F;      // delta_phi: lines closer in direction than this plus their sigmas are parallel
+  float max_reach_m = 2.0F;        // lines farther apart belong to no common object; set to the largest model diameter
   float min_depth_length_px = 12;  // of a base line
   float junction_quality = 1;      // log quality that a junction adds
 };
@@ -29,15 +29,15 @@ struct ImageLinePair {
   std::uint16_t base = 0;   // a line with depth
   std::uint16_t other = 0;  // with depth if `metric`
   LineSetKind kind = LineSetKind::kIntersecting;
-  bool metric = false;      // false: a 2D constraint; only the junction is known, V's numbers are not
-  LineEnd base_end = LineEnd::kNone;   // of a junction
+  bool metric = false;                // false: a 2D constraint; only the junction is known, V's numbers are not
+  LineEnd base_end = LineEnd::kNone;  // of a junction
   LineEnd other_end = LineEnd::kNone;
-  float angle_rad = 0;       // delta_phi or phi, 0..pi/2
+  float angle_rad = 0;  // delta_phi or phi, 0..pi/2
   float angle_sigma_rad = 0;
-  float distance_m = 0;      // lambda, between the infinite lines
+  float distance_m = 0;  // lambda, between the infinite lines
   float distance_sigma_m = 0;
   float farthest_end_m = 0;  // rho or theta
-  float quality = 0;  // log of what the pair tells: long lines, well known V
+  float quality = 0;         // log of what the pair tells: long lines, well known V
 };
 
 struct BetterImagePair {

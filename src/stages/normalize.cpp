@@ -32,7 +32,8 @@ WIREPOSE_VECTOR_KERNEL void Slide(const std::uint8_t* in, const std::uint8_t* ou
 }
 
 // total[i] = sum of padded columns before i.
-void Accumulate(const std::array<std::int32_t, kMaxImageWidth>& columns, int width, std::array<std::int32_t, kPadded>& total) {
+void Accumulate(const std::array<std::int32_t, kMaxImageWidth>& columns, int width,
+                std::array<std::int32_t, kPadded>& total) {
   std::int32_t running = 0;
   std::size_t k = 0;
   total[k++] = 0;

@@ -61,13 +61,15 @@ bool PoseScorer::Score(const Matrix3& R, const Vector3& t, const EdgeBits& visib
   if (left.sum <= 0 || static_cast<float>(left.inside) < params_.min_inside * static_cast<float>(total)) return false;
   for (const Sampled& s : sampled) {
     const Projected& p = s.p;
-    AddSupport(scene_.right, right_gain_, {p.a.x() - p.disparity_a, p.a.y()}, {p.b.x() - p.disparity_b, p.b.y()}, s.n, right);
+    AddSupport(scene_.right, right_gain_, {p.a.x() - p.disparity_a, p.a.y()}, {p.b.x() - p.disparity_b, p.b.y()}, s.n,
+               right);
   }
   score = left.sum + right.sum;
   return true;
 }
 
-void PoseScorer::AddSupport(const EdgeMap& map, const LogGain& gain, const Vector2& a, const Vector2& b, int n, Support& out) {
+void PoseScorer::AddSupport(const EdgeMap& map, const LogGain& gain, const Vector2& a, const Vector2& b, int n,
+                            Support& out) {
   const Vector2 d = b - a;
   const int direction = EdgeMap::Direction(d.x(), d.y());
   const float step = 1 / static_cast<float>(n);

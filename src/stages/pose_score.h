@@ -39,7 +39,8 @@ class PoseScorer {
   bool Project(const PreparedEdge& edge, const Matrix3& R, const Vector3& t, Projected& out) const;
 
   // Log-likelihood ratio of the visible edges' samples in both images, object at (R, t) against background. False when
-  // too little of the object lies in the image, its longest edges already fail or the left image speaks against it. `visible` are the edges to score.
+  // too little of the object lies in the image, its longest edges already fail or the left image speaks against it.
+  // `visible` are the edges to score.
   bool Score(const Matrix3& R, const Vector3& t, const EdgeBits& visible, float& score) const;
 
  private:
@@ -51,7 +52,8 @@ class PoseScorer {
     int hits = 0, inside = 0;
   };
   [[nodiscard]] LogGain Gain(const EdgeMap& map) const;
-  static void AddSupport(const EdgeMap& map, const LogGain& gain, const Vector2& a, const Vector2& b, int n, Support& out);
+  static void AddSupport(const EdgeMap& map, const LogGain& gain, const Vector2& a, const Vector2& b, int n,
+                         Support& out);
 
   const PoseScoreParams& params_;
   const SceneEdges& scene_;

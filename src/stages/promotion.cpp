@@ -129,7 +129,8 @@ class Promoter {
     return set.t.z() > 0.05F;
   }
 
-  void AddLine(const CorrespondingSet& set, const Line3& line, const PreparedEdge& edge, Matrix6d& H, Vector6d& g) const {
+  void AddLine(const CorrespondingSet& set, const Line3& line, const PreparedEdge& edge, Matrix6d& H,
+               Vector6d& g) const {
     PoseScorer::Projected p;
     if (!scorer_.Project(edge, set.R, set.t, p)) return;
     const Vector2 d = p.b - p.a;
@@ -154,12 +155,14 @@ class Promoter {
       const auto variance = static_cast<double>(end == 0 ? line.var_a : line.var_b);
       const Vector3d by_depth(0, 0, -camera_.f * camera_.baseline * iz * iz);
       const auto floor = static_cast<double>(params_.sigma_disparity_px);
-      AddRow(x - set.t.cast<double>(), by_depth, measured - camera_.DisparityOfDepth(x.z()), std::sqrt(variance + floor * floor), H, g);
+      AddRow(x - set.t.cast<double>(), by_depth, measured - camera_.DisparityOfDepth(x.z()),
+             std::sqrt(variance + floor * floor), H, g);
     }
   }
 
   // `p`: the point relative to the model origin, camera axes; `gradient`: of the measurement by the point.
-  static void AddRow(const Vector3d& p, const Vector3d& gradient, double residual, double sigma, Matrix6d& H, Vector6d& g) {
+  static void AddRow(const Vector3d& p, const Vector3d& gradient, double residual, double sigma, Matrix6d& H,
+                     Vector6d& g) {
     Vector6d J;
     J.head<3>() = p.cross(gradient);
     J.tail<3>() = gradient;
@@ -220,7 +223,8 @@ void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const 
   const float aligned_tolerance = params.aligned_duplicate_share * model.view.diameter_m;
   for (const CorrespondingSet& set : best.Sorted()) {
     bool duplicate = false;
-    for (const CorrespondingSet& k : out) duplicate = duplicate || IsSamePose(model, set.R, set.t, k.R, k.t, aligned_tolerance);
+    for (const CorrespondingSet& k : out)
+      duplicate = duplicate || IsSamePose(model, set.R, set.t, k.R, k.t, aligned_tolerance);
     if (!duplicate && !out.try_push_back(set)) break;
   }
 }

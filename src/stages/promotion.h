@@ -8,14 +8,14 @@
 namespace wirepose {
 
 struct PromotionParams {
-  float max_offset_px = 8;     // of a segment's ends from the projected edge; halved in the second round
-  float min_cosine = 0.97F;    // of the angle between segment and projected edge
-  float sigma_px = 0.7F;       // image residuals
+  float max_offset_px = 8;          // of a segment's ends from the projected edge; halved in the second round
+  float min_cosine = 0.97F;         // of the angle between segment and projected edge
+  float sigma_px = 0.7F;            // image residuals
   float sigma_disparity_px = 0.5F;  // in addition to the line's own
   float duplicate_share = 0.04F;    // of the diameter: hypotheses whose box corners are nearer than this are one ...
   float aligned_duplicate_share = 0.08F;  // ... and so are aligned sets: refinement would bring them together
-  float line_gain = 2.0F;      // rank of each line of the set ...
-  float face_gain = 3.0F;      // ... and of each surface it covers, added to the coarse score
+  float line_gain = 2.0F;                 // rank of each line of the set ...
+  float face_gain = 3.0F;                 // ... and of each surface it covers, added to the coarse score
 };
 
 // One line of a corresponding set.
@@ -29,9 +29,9 @@ struct CorrespondingSet {
   Matrix3 R = Matrix3::Identity();  // T_camera_model, aligned to the set
   Vector3 t = Vector3::Zero();
   FixedVector<SetMember, kMaxSetLines> members;  // the longest ones
-  std::uint16_t line_count = 0;  // distinct model edges that found a line
-  std::uint16_t face_count = 0;  // visible surfaces that those edges touch
-  float score = 0;               // coarse score of the aligned pose
+  std::uint16_t line_count = 0;                  // distinct model edges that found a line
+  std::uint16_t face_count = 0;                  // visible surfaces that those edges touch
+  float score = 0;                               // coarse score of the aligned pose
   float rank = 0;
 };
 using CorrespondingSets = FixedVector<CorrespondingSet, kMaxCandidates>;

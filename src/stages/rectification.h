@@ -37,7 +37,8 @@ struct Rectification {
 // Rectifies by turning both cameras by half of their relative rotation and then the baseline into the x axis
 // (Bouguet's method, as OpenCV's stereoRectify); one focal length, the mean of the four, and one principal point, such
 // that the raw image centres stay as central as possible. False when a focal length or the baseline is not positive,
-// R is no rotation, the right camera is not to the right of the left one, or the optical axes are more than 60 degrees apart.
+// R is no rotation, the right camera is not to the right of the left one, or the optical axes are more than 60 degrees
+// apart.
 [[nodiscard]] bool ComputeRectification(const StereoCalibration& calibration, Rectification& out);
 
 // Resamples `raw` bilinearly into `out`; both of the calibrated size. Pixels outside the row's valid interval repeat

@@ -47,7 +47,8 @@ class Refiner {
     out = {};
     out.T_camera_model = start;
     for (int i = 0; i < params_.iterations; ++i) {
-      if (i == 0 || i == params_.iterations / 2) SampleVisibleEdges(params_.samples, images_.camera, model_, T, scratch_.front, scratch_.samples);
+      if (i == 0 || i == params_.iterations / 2)
+        SampleVisibleEdges(params_.samples, images_.camera, model_, T, scratch_.front, scratch_.samples);
       const float share = static_cast<float>(i) / static_cast<float>(std::max(1, params_.iterations - 1));
       // Halves early: the first iterations bring most edges close.
       const float range = params_.first_range_px + (params_.last_range_px - params_.first_range_px) * std::sqrt(share);
@@ -81,8 +82,11 @@ class Refiner {
                  int range, std::uint16_t edge) {
     const RectifiedCamera& c = images_.camera;
     const double iz = 1 / x.z();
-    const Vector2 at(static_cast<float>(c.f * (x.x() - shift) * iz + c.cx), static_cast<float>(c.f * x.y() * iz + c.cy));
-    if (!(at.x() > 2 && at.y() > 2 && at.x() < static_cast<float>(c.width - 3) && at.y() < static_cast<float>(c.height - 3))) return;
+    const Vector2 at(static_cast<float>(c.f * (x.x() - shift) * iz + c.cx),
+                     static_cast<float>(c.f * x.y() * iz + c.cy));
+    if (!(at.x() > 2 && at.y() > 2 && at.x() < static_cast<float>(c.width - 3) &&
+          at.y() < static_cast<float>(c.height - 3)))
+      return;
     ++sampled_[edge];
     const Vector2 normal(-tangent.y(), tangent.x());
     float offset = 0;
@@ -103,7 +107,8 @@ class Refiner {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const std::uint16_t e = rows_[i].edge;
-      if (static_cast<float>(found_[e]) >= params_.min_qualified_share * static_cast<float>(sampled_[e])) rows_[kept++] = rows_[i];
+      if (static_cast<float>(found_[e]) >= params_.min_qualified_share * static_cast<float>(sampled_[e]))
+        rows_[kept++] = rows_[i];
     }
     rows_.resize(kept);
   }

@@ -10,11 +10,11 @@ namespace wirepose {
 struct RefineParams {
   int iterations = 6;
   SampleParams samples{.step_px = 8};
-  float first_range_px = 8;    // 1D search along the edge normal; shrinks to last_range_px
+  float first_range_px = 8;  // 1D search along the edge normal; shrinks to last_range_px
   float last_range_px = 3;
-  float min_gradient = 1.0F;   // grey levels per pixel: weaker edges are not followed
+  float min_gradient = 1.0F;         // grey levels per pixel: weaker edges are not followed
   float min_qualified_share = 0.4F;  // an edge with less support than this does not pull in the last iterations
-  float max_rms_px = 1.25F;  // what fits worse after all iterations is no fit
+  float max_rms_px = 1.25F;          // what fits worse after all iterations is no fit
   float sigma_floor_px = 0.3F;
   float covariance_inflation = 2.0F;  // of the standard deviations: samples share their errors
 };
@@ -41,8 +41,8 @@ struct RefinedPose {
 
 // Robust Gauss-Newton on SE(3). The closest image feature of eq. 11 is searched along the normal of the projected edge
 // (RAPiD: Harris & Stennett 1990) in both images; all offsets enter one 6x6 normal matrix with Geman-McClure weights.
-// The search range shrinks from iteration to iteration; hidden lines are found at the start and anew half way. Only qualified
-// features count at the end: edges of which a good share was found. O(iterations * samples * range).
+// The search range shrinks from iteration to iteration; hidden lines are found at the start and anew half way. Only
+// qualified features count at the end: edges of which a good share was found. O(iterations * samples * range).
 void RefinePose(const RefineParams& params, const SceneImages& images, const PreparedModel& model, const Pose& start,
                 RefineScratch& scratch, RefinedPose& out);
 

@@ -119,7 +119,9 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
     }
   };
   float total = 0;
-  for_each_edge([&](std::size_t, const Vector3&, const Vector3&, const Seen&, const Seen&, float length) { total += length + params.step_px; });
+  for_each_edge([&](std::size_t, const Vector3&, const Vector3&, const Seen&, const Seen&, float length) {
+    total += length + params.step_px;
+  });
   const float step = std::max(params.step_px, total / static_cast<float>(kMaxEdgeSamples));
 
   FrontTriangles near_edge;  // that may hide a part of the edge at hand
@@ -139,7 +141,9 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
       sample.point = model.edges[e].a + w * (model.edges[e].b - model.edges[e].a);
       sample.left = pa.left + s * (pb.left - pa.left);
       sample.disparity = pa.disparity + s * (pb.disparity - pa.disparity);
-      if (!near_edge.empty() && IsHidden(model.view, near_edge, eye, sample.point, sample.left, edge.face[0], edge.face[1])) continue;
+      if (!near_edge.empty() &&
+          IsHidden(model.view, near_edge, eye, sample.point, sample.left, edge.face[0], edge.face[1]))
+        continue;
       out.push_back(sample);
     }
   });

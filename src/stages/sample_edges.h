@@ -12,13 +12,13 @@ namespace wirepose {
 
 // A point of a visible model edge in the rectified pair.
 struct EdgeSample {
-  Vector3 point;      // model frame, m
-  Vector2 left;       // px
-  float disparity;    // px
-  Vector2 tangent;    // unit, of the projected edge in the left image
+  Vector3 point;          // model frame, m
+  Vector2 left;           // px
+  float disparity;        // px
+  Vector2 tangent;        // unit, of the projected edge in the left image
   Vector2 tangent_right;  // and in the right image
   std::uint16_t edge;
-  float weight_px;    // image length that the sample stands for
+  float weight_px;  // image length that the sample stands for
 };
 
 using EdgeSamples = FixedVector<EdgeSample, kMaxEdgeSamples>;

@@ -29,12 +29,11 @@ bool IsDuplicate(const PreparedModel& model, const Pose& p, const Pose& q) {
 
 float ScoreOf(const ScoreParams& params, const Evidence& evidence) {
   const float length = std::max(1.0F, evidence.visible_px);
-  const float logit = params.bias + params.edge_density * 100 * evidence.edges / length +
-                      params.log_length * Log(length / 300) + params.contrast * evidence.contrast +
-                      params.distinct * evidence.distinct + params.overrun * evidence.overrun +
-                      params.inside * evidence.inside + params.faces * evidence.faces +
-                      params.on * evidence.surface.on + params.through * evidence.surface.through +
-                      params.drop * evidence.surface.drop;
+  const float logit =
+      params.bias + params.edge_density * 100 * evidence.edges / length + params.log_length * Log(length / 300) +
+      params.contrast * evidence.contrast + params.distinct * evidence.distinct + params.overrun * evidence.overrun +
+      params.inside * evidence.inside + params.faces * evidence.faces + params.on * evidence.surface.on +
+      params.through * evidence.surface.through + params.drop * evidence.surface.drop;
   return 1 / (1 + Exp(-std::clamp(logit, -30.0F, 30.0F)));
 }
 
@@ -51,7 +50,8 @@ void SelectDetections(const SelectParams& params, const RectifiedCamera& camera,
     bool duplicate = false;
     for (const std::uint16_t k : accepted) {
       const Candidate& a = candidates[k];
-      duplicate = duplicate || (a.model == c.model && IsDuplicate(models[c.model], a.pose.T_camera_model, c.pose.T_camera_model));
+      duplicate = duplicate ||
+                  (a.model == c.model && IsDuplicate(models[c.model], a.pose.T_camera_model, c.pose.T_camera_model));
     }
     if (duplicate) continue;
     SampleVisibleEdges({}, camera, models[c.model], c.pose.T_camera_model, scratch.front, scratch.samples);

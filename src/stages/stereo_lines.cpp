@@ -47,7 +47,8 @@ struct Match {
 
 // Adds |left - right| of one pixel row of a strip to the costs of all disparities it can have. `cost` counts down from
 // disparity `reachable - 1`, so that memory runs up.
-WIREPOSE_VECTOR_KERNEL void AddRow(const std::uint8_t* left, const std::uint8_t* right, int count, int reachable, std::uint16_t* cost) {
+WIREPOSE_VECTOR_KERNEL void AddRow(const std::uint8_t* left, const std::uint8_t* right, int count, int reachable,
+                                   std::uint16_t* cost) {
   for (int j = 0; j < count; ++j) {
     const std::uint8_t l = left[j];
     for (int k = 0; k < reachable; ++k) {
@@ -81,7 +82,8 @@ void FillRowCosts(const StereoInput& in, const RowSamples& rows, int begin, Ster
     const int reachable = std::min(kMaxDisparity, x0 + 1);
     std::array<std::uint16_t, kMaxDisparity> reversed{};
     const std::ptrdiff_t row = rows[r].y * kStride;
-    AddRow(in.left.data() + row + x0, in.right.data() + row + x0 - (reachable - 1), kStripWidth, reachable, reversed.data());
+    AddRow(in.left.data() + row + x0, in.right.data() + row + x0 - (reachable - 1), kStripWidth, reachable,
+           reversed.data());
     StoreReversed(reversed, reachable, cost);
   }
 }
@@ -102,7 +104,8 @@ void FillColumnCosts(const StereoInput& in, const RowSamples& columns, int begin
     std::array<std::uint16_t, kMaxDisparity> reversed{};
     for (int y = y0; y < y0 + kStripWidth; ++y) {
       const std::ptrdiff_t row = y * kStride;
-      AddRow(in.left.data() + row + x0, in.right.data() + row + x0 - (reachable - 1), kColumns, reachable, reversed.data());
+      AddRow(in.left.data() + row + x0, in.right.data() + row + x0 - (reachable - 1), kColumns, reachable,
+             reversed.data());
     }
     for (std::uint16_t& c : reversed) c = static_cast<std::uint16_t>(c / kColumns);
     StoreReversed(reversed, reachable, cost);
@@ -116,7 +119,8 @@ RowSamples FlatSamples(const Segment2& s) {
   const float length = s.Length();
   const int n = std::clamp(static_cast<int>((length + 2 * kFlatExtension) / 3), 6, kMaxStereoRows);
   for (int k = 0; k < n; ++k) {
-    const float along = -kFlatExtension + (static_cast<float>(k) + 0.5F) * (length + 2 * kFlatExtension) / static_cast<float>(n);
+    const float along =
+        -kFlatExtension + (static_cast<float>(k) + 0.5F) * (length + 2 * kFlatExtension) / static_cast<float>(n);
     const float t = along / length;
     const Vector2 p = s.a + t * s.Delta();
     samples.push_back({static_cast<int>(std::floor(p.y() + 0.5F)), p.x(), t});
@@ -164,7 +168,8 @@ Match SearchDisparity(const StereoLineParams& params, const Segment2& segment, c
     const std::uint16_t lowest = LowerTo(scratch.sum.data() + first, count, scratch.best_at.data() + first);
     if (lowest >= best) continue;
     best = lowest;
-    const auto d = static_cast<float>(std::find(scratch.sum.begin() + first, scratch.sum.end(), lowest) - scratch.sum.begin());
+    const auto d =
+        static_cast<float>(std::find(scratch.sum.begin() + first, scratch.sum.end(), lowest) - scratch.sum.begin());
     match.disparity_a = d - static_cast<float>(s);
     match.disparity_b = d + static_cast<float>(s);
   }
@@ -173,7 +178,8 @@ Match SearchDisparity(const StereoLineParams& params, const Segment2& segment, c
   const float middle = 0.5F * (match.disparity_a + match.disparity_b);
   std::uint32_t second = 0xFFFF;
   for (int d = 0; d < kMaxDisparity; ++d) {
-    if (std::abs(static_cast<float>(d) - middle) > 2.5F) second = std::min<std::uint32_t>(second, scratch.best_at[static_cast<std::size_t>(d)]);
+    if (std::abs(static_cast<float>(d) - middle) > 2.5F)
+      second = std::min<std::uint32_t>(second, scratch.best_at[static_cast<std::size_t>(d)]);
   }
   match.cost = static_cast<float>(best) / n;
   match.cost_ratio = (static_cast<float>(best) + n) / (static_cast<float>(second) + n);
@@ -280,7 +286,8 @@ void Refine(const StereoLineParams& params, const StereoInput& in, const Match& 
     q = fit.q;
     const double sigma = static_cast<double>(params.sigma_inflation) * std::max(fit.residual, 0.05);
     const double det = fit.h00 * fit.h11 - fit.h01 * fit.h01;
-    const double floor = static_cast<double>(params.sigma_floor_px * params.sigma_floor_px) + sigma_offset * sigma_offset;
+    const double floor =
+        static_cast<double>(params.sigma_floor_px * params.sigma_floor_px) + sigma_offset * sigma_offset;
     var_p = sigma * sigma * fit.h11 / std::max(det, 1e-9) + floor;
     var_q = sigma * sigma * fit.h00 / std::max(det, 1e-9) + 4 * floor;
     cov = -sigma * sigma * fit.h01 / std::max(det, 1e-9);
@@ -343,7 +350,8 @@ void MatchLine(const StereoLineParams& params, const StereoInput& in, StereoScra
   }
   if (line.disparity_a_px < 1 || line.disparity_b_px < 1) return;
   const auto point = [&](const Vector2& p, float d) -> Vector3 {
-    return in.camera.Triangulate(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(d)).cast<float>();
+    return in.camera.Triangulate(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(d))
+        .cast<float>();
   };
   line.a = point(line.segment.a, line.disparity_a_px);
   line.b = point(line.segment.b, line.disparity_b_px);

@@ -14,7 +14,7 @@
 namespace wirepose {
 
 struct StereoLineParams {
-  float min_slope = 0.21F;  // |dy| / length: lines within 12 degrees of the epipolar line are flat
+  float min_slope = 0.21F;            // |dy| / length: lines within 12 degrees of the epipolar line are flat
   float max_disparity_slope = 0.45F;  // change of disparity per pixel of line: steeper surfaces are not matched
   // A match counts when its cost is below this share of the best one elsewhere, or when both sides of the edge agree.
   float max_cost_ratio = 0.75F;
@@ -53,8 +53,8 @@ using Lines3 = FixedVector<Line3, kMaxSegments>;
 
 // One line per left segment, in the same order; `has_depth` tells which ones were matched.
 //
-// Disparity is linear along an image line, so the search has two unknowns. Strips of 7 px on each side of the edge, both
-// containing the edge, are compared with the right image by the sum of absolute differences of locally normalised
+// Disparity is linear along an image line, so the search has two unknowns. Strips of 7 px on each side of the edge,
+// both containing the edge, are compared with the right image by the sum of absolute differences of locally normalised
 // values, for every disparity and slope; the side with the clearer minimum owns the depth, since at an occluding edge
 // only the near side moves with it. Then the edge itself is found to sub-pixel precision in the rows of the right image
 // and a robust line through those positions gives both end disparities with covariance.

@@ -14,7 +14,8 @@ struct SurfaceEvidenceParams {
   float prior_cells = 5;  // cells without a vote that every share is diluted with: few cells tell little
 };
 
-// Shares of the cells whose disparity is known, 0..1. What is hidden by something nearer votes as `before`, not against.
+// Shares of the cells whose disparity is known, 0..1. What is hidden by something nearer votes as `before`, not
+// against.
 struct SurfaceEvidence {
   float on = 0;       // inside: the scene's surface is the model's
   float through = 0;  // inside: the scene is farther, one sees through where the object should be

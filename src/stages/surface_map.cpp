@@ -14,8 +14,13 @@ struct Corner {
 class Rasterizer {
  public:
   Rasterizer(const RectifiedCamera& camera, const PreparedModel& model, const Pose& T, SurfaceMap& out)
-      : model_(model), out_(out), R_(T.R.cast<float>()), t_(T.t.cast<float>()),
-        f_(static_cast<float>(camera.f)), cx_(static_cast<float>(camera.cx)), cy_(static_cast<float>(camera.cy)),
+      : model_(model),
+        out_(out),
+        R_(T.R.cast<float>()),
+        t_(T.t.cast<float>()),
+        f_(static_cast<float>(camera.f)),
+        cx_(static_cast<float>(camera.cx)),
+        cy_(static_cast<float>(camera.cy)),
         fb_(static_cast<float>(camera.f * camera.baseline)) {
     out.width = (camera.width + SurfaceMap::kScale - 1) / SurfaceMap::kScale;
     out.height = (camera.height + SurfaceMap::kScale - 1) / SurfaceMap::kScale;
@@ -109,7 +114,8 @@ class Rasterizer {
 
 }  // namespace
 
-void RenderSurface(const RectifiedCamera& camera, const PreparedModel& model, const Pose& T_camera_model, SurfaceMap& out) {
+void RenderSurface(const RectifiedCamera& camera, const PreparedModel& model, const Pose& T_camera_model,
+                   SurfaceMap& out) {
   Rasterizer(camera, model, T_camera_model, out).Run();
 }
 

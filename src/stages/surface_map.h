@@ -23,7 +23,8 @@ struct SurfaceMap {
 
 // Draws the faces that turn towards the camera; the nearest one wins. Faces that come closer than 5 cm are left out.
 // O(cells of the bounding box + triangles * their cells).
-void RenderSurface(const RectifiedCamera& camera, const PreparedModel& model, const Pose& T_camera_model, SurfaceMap& out);
+void RenderSurface(const RectifiedCamera& camera, const PreparedModel& model, const Pose& T_camera_model,
+                   SurfaceMap& out);
 
 }  // namespace wirepose
 

@@ -47,12 +47,13 @@ float PatchCost(const VerifyInput& in, const PlaneDisparity& plane, int u, int v
   return static_cast<float>(sum) / kPatchPixels;
 }
 
-// Costs of one surface at several shifts of disparity, summed over patches. Shifts are counted in units of what scale may
-// be wrong by: a pixel, or 3 % of the disparity, by which real stereo rigs and object measures were seen to disagree.
+// Costs of one surface at several shifts of disparity, summed over patches. Shifts are counted in units of what scale
+// may be wrong by: a pixel, or 3 % of the disparity, by which real stereo rigs and object measures were seen to
+// disagree.
 struct ShiftProfile {
   static constexpr std::array<float, 9> kShifts = {-4.5F, -2.5F, -1, -0.5F, 0, 0.5F, 1, 2.5F, 4.5F};
-  static constexpr std::size_t kNear = 2;   // first of the shifts that count as the plane itself
-  static constexpr std::size_t kFar = 7;    // one past the last of them
+  static constexpr std::size_t kNear = 2;  // first of the shifts that count as the plane itself
+  static constexpr std::size_t kFar = 7;   // one past the last of them
   std::array<float, kShifts.size()> cost{};
   int patches = 0;
 
@@ -111,7 +112,8 @@ class EvidenceGatherer {
     const Vector3 p = R_ * model_.view.VertexPosition(vertex) + t_;
     const float z = std::max(p.z(), 0.05F);
     const auto f = static_cast<float>(in_.camera.f);
-    return {f * p.x() / z + static_cast<float>(in_.camera.cx), f * p.y() / z + static_cast<float>(in_.camera.cy), p.z()};
+    return {f * p.x() / z + static_cast<float>(in_.camera.cx), f * p.y() / z + static_cast<float>(in_.camera.cy),
+            p.z()};
   }
 
   // Patches on a grid over the face's triangles, where the object does not hide itself.
@@ -125,7 +127,8 @@ class EvidenceGatherer {
                                 std::sqrt(area / static_cast<float>(params_.max_face_patches)));
     const PlaneDisparity plane = DisparityOfFace(in_.camera, face, T_);
     ShiftProfile profile;
-    for (int i = 0; i < face.triangle_count; ++i) AddTriangle(face.first_triangle + i, f, plane, static_cast<int>(grid), profile);
+    for (int i = 0; i < face.triangle_count; ++i)
+      AddTriangle(face.first_triangle + i, f, plane, static_cast<int>(grid), profile);
     out_.faces += profile.LogRatio();
   }
 
@@ -142,7 +145,9 @@ class EvidenceGatherer {
     const float det = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
     if (std::abs(det) < 1) return;
     const auto low = [&](float p, float q, float r) { return std::max(0, static_cast<int>(std::min({p, q, r}))); };
-    const auto high = [&](float p, float q, float r, int end) { return std::min(static_cast<float>(end - 1), std::max({p, q, r})); };
+    const auto high = [&](float p, float q, float r, int end) {
+      return std::min(static_cast<float>(end - 1), std::max({p, q, r}));
+    };
     const int x0 = (low(a.x(), b.x(), c.x()) / grid + 1) * grid, y0 = (low(a.y(), b.y(), c.y()) / grid + 1) * grid;
     const int x1 = static_cast<int>(high(a.x(), b.x(), c.x(), in_.camera.width));
     const int y1 = static_cast<int>(high(a.y(), b.y(), c.y(), in_.camera.height));

@@ -46,8 +46,7 @@ BENCHMARK(Fld)->Name("opencv/FastLineDetector_one_image")->Apply(WithPercentiles
 cv::Mat DenseDisparity() {
   const auto matcher = cv::StereoSGBM::create(0, 128, 7, 8 * 49, 32 * 49, 1, 31, 10, 100, 2);
   cv::Mat disparity;
-  matcher->compute(ToMat(WarmRecognizer().left_rectified()),
-                   ToMat(WarmRecognizer().right_rectified()), disparity);
+  matcher->compute(ToMat(WarmRecognizer().left_rectified()), ToMat(WarmRecognizer().right_rectified()), disparity);
   return disparity;
 }
 
@@ -65,8 +64,7 @@ cv::Mat ModelPoints(const ModelView& model) {
     const Vector3 a = model.VertexPosition(t.vertex[0]), b = model.VertexPosition(t.vertex[1]),
                   c = model.VertexPosition(t.vertex[2]);
     const Vector3 n = (b - a).cross(c - a).normalized();
-    const int steps =
-        std::max(1, static_cast<int>(std::max((b - a).norm(), (c - a).norm()) / 0.01F));
+    const int steps = std::max(1, static_cast<int>(std::max((b - a).norm(), (c - a).norm()) / 0.01F));
     for (int i = 0; i <= steps; ++i) {
       for (int j = 0; i + j <= steps; ++j) {
         const Vector3 p = a + static_cast<float>(i) / static_cast<float>(steps) * (b - a) +
@@ -108,10 +106,7 @@ void PointPairFeatures(benchmark::State& state) {
   for (auto _ : state) detector.match(scene, poses, 1.0 / 10, 0.03);
   state.counters["points"] = scene.rows;
 }
-BENCHMARK(PointPairFeatures)
-    ->Name("opencv/surface_matching_one_model")
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
+BENCHMARK(PointPairFeatures)->Name("opencv/surface_matching_one_model")->Unit(benchmark::kMillisecond)->Iterations(1);
 #endif
 
 }  // namespace

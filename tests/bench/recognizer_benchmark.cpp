@@ -20,8 +20,7 @@ class StageClock final : public StageObserver {
  private:
   void DoStageDone(Stage stage) override {
     const auto now = std::chrono::steady_clock::now();
-    ms[static_cast<std::size_t>(stage)] +=
-        std::chrono::duration<double, std::milli>(now - last_).count();
+    ms[static_cast<std::size_t>(stage)] += std::chrono::duration<double, std::milli>(now - last_).count();
     last_ = now;
   }
   std::chrono::steady_clock::time_point last_;
@@ -70,11 +69,10 @@ void PrintStageTable(int frames) {
     }
     ms[kStageCount].push_back(total);
   }
-  std::printf("\nTime of %d frames, %zu models, ms\n%-18s %8s %8s %8s\n", frames, Models().size(),
-              "stage", "p50", "p99", "max");
+  std::printf("\nTime of %d frames, %zu models, ms\n%-18s %8s %8s %8s\n", frames, Models().size(), "stage", "p50",
+              "p99", "max");
   for (std::size_t s = 0; s <= kStageCount; ++s) {
-    std::printf("%-18s %8.3f %8.3f %8.3f\n",
-                s == kStageCount ? "whole frame" : StageName(static_cast<Stage>(s)),
+    std::printf("%-18s %8.3f %8.3f %8.3f\n", s == kStageCount ? "whole frame" : StageName(static_cast<Stage>(s)),
                 Percentile(ms[s], 0.5), Percentile(ms[s], 0.99), Percentile(ms[s], 1));
   }
 }

@@ -44,8 +44,7 @@ Workspace& Work() {
 
 void Rectify(benchmark::State& state) {
   for (auto _ : state)
-    RectifyImage(Frame().left.view(), Work().rectification.left,
-                 {Work().image.data(), 640, 480, 640});
+    RectifyImage(Frame().left.view(), Work().rectification.left, {Work().image.data(), 640, 480, 640});
 }
 
 void Segments2D(benchmark::State& state) {
@@ -71,8 +70,7 @@ void StereoLines(benchmark::State& state) {
   Workspace& w = Work();
   for (auto _ : state) {
     MatchLines({},
-               {w.rectification.camera, w.left.normalized, w.right.normalized, w.right.smooth,
-                w.rectification.right},
+               {w.rectification.camera, w.left.normalized, w.right.normalized, w.right.smooth, w.rectification.right},
                w.left.segments, w.stereo, w.lines);
   }
   state.counters["lines"] = static_cast<double>(w.lines.size());
@@ -80,9 +78,7 @@ void StereoLines(benchmark::State& state) {
 
 void LineSets(benchmark::State& state) {
   Workspace& w = Work();
-  MatchLines({},
-             {w.rectification.camera, w.left.normalized, w.right.normalized, w.right.smooth,
-              w.rectification.right},
+  MatchLines({}, {w.rectification.camera, w.left.normalized, w.right.normalized, w.right.smooth, w.rectification.right},
              w.left.segments, w.stereo, w.lines);
   for (auto _ : state) FindLineSets({}, w.rectification.camera, w.lines, w.sets);
   state.counters["pairs"] = static_cast<double>(w.sets.pairs.size());

@@ -37,8 +37,7 @@ TEST(Rectified, DisparityIsTheRightEyesShift) {
   for (int i = 0; i < 1000; ++i) {
     const RectifiedCamera camera = AnyCamera(random);
     const Vector3d p(random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(0.3, 5));
-    const Vector3d left = camera.Project(p),
-                   right = camera.Project(p - Vector3d(camera.baseline, 0, 0));
+    const Vector3d left = camera.Project(p), right = camera.Project(p - Vector3d(camera.baseline, 0, 0));
     EXPECT_NEAR(left.x() - left.z(), right.x(), 1e-10);
     EXPECT_DOUBLE_EQ(left.y(), right.y());
   }

@@ -107,13 +107,12 @@ TEST(Perturbation, TurnsAboutTheCentre) {
   sim::Random random(8);
   for (int i = 0; i < 1000; ++i) {
     const Pose T = AnyPose(random);
-    const Vector3d centre = AnyVector(random, 2), p = AnyVector(random, 1),
-                   w = AnyVector(random, random.Uniform(0, 3)), v = AnyVector(random, 1);
+    const Vector3d centre = AnyVector(random, 2), p = AnyVector(random, 1), w = AnyVector(random, random.Uniform(0, 3)),
+                   v = AnyVector(random, 1);
     Vector6d twist;
     twist << w, v;
     const Matrix3d R = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix();
-    EXPECT_LT((PerturbLeft(T, twist, centre) * p - (R * (T * p - centre) + centre + v)).norm(),
-              1e-12);
+    EXPECT_LT((PerturbLeft(T, twist, centre) * p - (R * (T * p - centre) + centre + v)).norm(), 1e-12);
   }
 }
 
@@ -128,8 +127,7 @@ TEST(Perturbation, DerivativeAgreesWithFiniteDifferences) {
     J << -Skew(T * p - centre), Matrix3d::Identity();
     for (int k = 0; k < 6; ++k) {
       const Vector6d step = kStep * Vector6d::Unit(k);
-      const Vector3d numeric =
-          (PerturbLeft(T, step, centre) * p - PerturbLeft(T, -step, centre) * p) / (2 * kStep);
+      const Vector3d numeric = (PerturbLeft(T, step, centre) * p - PerturbLeft(T, -step, centre) * p) / (2 * kStep);
       EXPECT_LT((numeric - J.col(k)).norm(), 1e-8);
     }
   }

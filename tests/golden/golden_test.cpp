@@ -30,8 +30,7 @@ void MakeInputs() {
     const std::string name = testing::kGoldenModels[id - 1];
     tools::CompileOptions options;
     options.id = id;
-    const auto model =
-        tools::CompileModel(std::filesystem::path(WIREPOSE_MODELS) / (name + ".ply"), options);
+    const auto model = tools::CompileModel(std::filesystem::path(WIREPOSE_MODELS) / (name + ".ply"), options);
     ASSERT_TRUE(model && tools::WriteModelFile(kGoldenFolder / (name + ".wpm"), *model));
     wanted.push_back((*targets)[id - 1]);
   }
@@ -64,9 +63,8 @@ void Compare(const std::string& name, const std::string& text) {
     const bool more_now = static_cast<bool>(std::getline(now, actual));
     ASSERT_EQ(more, more_now) << file << ":" << line << ": one of the two ends here";
     if (!more) return;
-    ASSERT_EQ(expected, actual)
-        << file << ":" << line
-        << " differs; if on purpose, run golden_test with WIREPOSE_UPDATE_GOLDEN=1";
+    ASSERT_EQ(expected, actual) << file << ":" << line
+                                << " differs; if on purpose, run golden_test with WIREPOSE_UPDATE_GOLDEN=1";
   }
 }
 
@@ -82,12 +80,10 @@ TEST_P(Golden, IntermediatesAreUnchanged) {
   ASSERT_EQ(recognizer.Configure(testing::GoldenCalibration()), RecognizerError::kOk);
   recognizer.ClearModels();
   const auto models = testing::GoldenModels();
-  for (const auto& model : models)
-    ASSERT_EQ(recognizer.AddModel(model.View()), RecognizerError::kOk);
+  for (const auto& model : models) ASSERT_EQ(recognizer.AddModel(model.View()), RecognizerError::kOk);
   const testing::StereoImages images = testing::GoldenFrame(GetParam());
   static RecognitionResult result;
-  ASSERT_EQ(recognizer.Process(images.left.view(), images.right.view(), nullptr, result),
-            RecognizerError::kOk);
+  ASSERT_EQ(recognizer.Process(images.left.view(), images.right.view(), nullptr, result), RecognizerError::kOk);
   testing::RecognizerDump dump(testing::Digits::kReadable);
   const std::string stem = "frame" + std::to_string(GetParam());
   Compare(stem + "_segments", dump.Segments("left: a, b, contrast", recognizer.left_segments()));

@@ -66,7 +66,8 @@ TEST_F(FramePairingTest, ACameraWhosePartnerIsSilentKeepsABuffer) {
   EXPECT_EQ(freed_.size(), 2U) << "at most two wait";
 }
 
-// Random losses, delays and order of arrival: a pair is never farther apart than allowed, no slot is lost or used twice.
+// Random losses, delays and order of arrival: a pair is never farther apart than allowed, no slot is lost or used
+// twice.
 TEST_F(FramePairingTest, RandomStreamsKeepTheBooks) {
   std::mt19937 random(9);
   for (int round = 0; round < 200; ++round) {
@@ -83,8 +84,8 @@ TEST_F(FramePairingTest, RandomStreamsKeepTheBooks) {
         const auto slot = std::find(with_camera[eye].begin(), with_camera[eye].end(), true);
         if (random() % 5 == 0 || slot == with_camera[eye].end()) continue;  // lost
         *slot = false;
-        pairing.Add(eye, Frame(static_cast<std::uint32_t>(slot - with_camera[eye].begin()),
-                               33 * t + (eye == 1 ? skew : 0)));
+        pairing.Add(eye,
+                    Frame(static_cast<std::uint32_t>(slot - with_camera[eye].begin()), 33 * t + (eye == 1 ? skew : 0)));
       }
       if (random() % 3 == 0) continue;  // the caller is busy
       FreedSlots freed;

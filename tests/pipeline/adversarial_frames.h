@@ -75,7 +75,8 @@ inline std::vector<AdversarialFrame> Clutter() {
   }
   for (const int size : {1, 2, 4, 8, 16, 24}) {
     frames.push_back(MakeFrame("noise of " + std::to_string(size) + " px", 40, [=](double x, double y) {
-      const auto cell = static_cast<std::uint32_t>(x / size) * 73856093U ^ static_cast<std::uint32_t>(y / size) * 19349663U;
+      const auto cell =
+          static_cast<std::uint32_t>(x / size) * 73856093U ^ static_cast<std::uint32_t>(y / size) * 19349663U;
       return static_cast<double>((cell * 2654435761U) >> 24);
     }));
   }

@@ -16,8 +16,7 @@ std::atomic<long> g_allocations{0};
 
 #ifdef __SANITIZE_ADDRESS__
 // Of the sanitizers' public interface; GCC's packages lack the header.
-extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*,
-                                                                  std::size_t),
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*, std::size_t),
                                                          void (*)(const volatile void*));
 namespace {
 [[maybe_unused]] const int kHooks = __sanitizer_install_malloc_and_free_hooks(
@@ -90,10 +89,8 @@ TEST(Allocation, NoneInTheRecognizer) {
   for (int i = 0; i < testing::kGoldenFrames; ++i) {
     const testing::StereoImages frame = testing::GoldenFrame(i);
     RecognizerError error{};
-    EXPECT_EQ(AllocationsIn([&] {
-                error = recognizer.Process(frame.left.view(), frame.right.view(), nullptr, result);
-              }),
-              0);
+    EXPECT_EQ(
+        AllocationsIn([&] { error = recognizer.Process(frame.left.view(), frame.right.view(), nullptr, result); }), 0);
     EXPECT_EQ(error, RecognizerError::kOk);
   }
   EXPECT_EQ(AllocationsIn([&] { recognizer.ClearModels(); }), 0);

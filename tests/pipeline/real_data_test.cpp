@@ -21,8 +21,7 @@ fs::path DataFolder() {
 // of the diameter.
 TEST(RealData, FindsTheTeaBox) {
   const fs::path folder = DataFolder() / "teabox-stereo";
-  if (!fs::exists(folder))
-    GTEST_SKIP() << folder << " is absent; set WIREPOSE_REAL_DATA to the folder of real data";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent; set WIREPOSE_REAL_DATA to the folder of real data";
   evaluation::EvaluationOptions options;
   options.dataset = folder;
   const auto outcome = evaluation::Evaluate(options, {});

@@ -44,8 +44,7 @@ class RecognizerDump {
   }
 
   std::string Detections(const Recognizer& recognizer, const RecognitionResult& result) {
-    Begin("detections: model, score, visible fraction, translation, rotation by rows",
-          result.detections.size());
+    Begin("detections: model, score, visible fraction, translation, rotation by rows", result.detections.size());
     for (std::size_t i = 0; i < result.detections.size(); ++i) {
       const Detection& d = result.detections[i];
       text_ += std::to_string(d.model_id);
@@ -62,8 +61,8 @@ class RecognizerDump {
     }
     const RecognitionStatistics& s = result.statistics;
     text_ += "statistics: used/dropped";
-    for (const ListUse& use : {s.left_segments, s.right_segments, s.lines, s.line_sets,
-                               s.correspondences, s.hypotheses, s.detections}) {
+    for (const ListUse& use :
+         {s.left_segments, s.right_segments, s.lines, s.line_sets, s.correspondences, s.hypotheses, s.detections}) {
       Members(use.used, '/', use.dropped);
     }
     text_ += result.budget_hit ? " budget hit\n" : "\n";
@@ -71,14 +70,11 @@ class RecognizerDump {
   }
 
   std::string Candidates(std::span<const Candidate> candidates) {
-    Begin("candidates: model, order, score, edges, contrast, faces, overrun, rms, translation",
-          candidates.size());
+    Begin("candidates: model, order, score, edges, contrast, faces, overrun, rms, translation", candidates.size());
     for (const Candidate& c : candidates) {
       Members(c.model, ' ', c.order);
-      Numbers({c.score, c.evidence.edges, c.evidence.contrast, c.evidence.faces, c.evidence.overrun,
-               c.pose.rms_px});
-      Numbers(
-          {c.pose.T_camera_model.t.x(), c.pose.T_camera_model.t.y(), c.pose.T_camera_model.t.z()});
+      Numbers({c.score, c.evidence.edges, c.evidence.contrast, c.evidence.faces, c.evidence.overrun, c.pose.rms_px});
+      Numbers({c.pose.T_camera_model.t.x(), c.pose.T_camera_model.t.y(), c.pose.T_camera_model.t.z()});
       EndLine();
     }
     return std::move(text_);

@@ -20,8 +20,7 @@ Recognizer& TheRecognizer() {
   return recognizer;
 }
 
-RecognizerError Process(const StereoImages& images, RecognitionResult& result,
-                        StageObserver* observer = nullptr) {
+RecognizerError Process(const StereoImages& images, RecognitionResult& result, StageObserver* observer = nullptr) {
   return TheRecognizer().Process(images.left.view(), images.right.view(), observer, result);
 }
 
@@ -32,8 +31,7 @@ class RecognizerTest : public ::testing::Test {
     TheRecognizer().ClearModels();
   }
   void AddModels() {
-    for (const auto& model : models_)
-      ASSERT_EQ(TheRecognizer().AddModel(model.View()), RecognizerError::kOk);
+    for (const auto& model : models_) ASSERT_EQ(TheRecognizer().AddModel(model.View()), RecognizerError::kOk);
   }
 
   std::vector<tools::CompiledModel> models_ = testing::GoldenModels();
@@ -102,8 +100,8 @@ TEST_F(RecognizerTest, FindsObjectsInRenderedKitchens) {
     }
     for (const bool u : used) false_alarms += u ? 0 : 1;
   }
-  printf("%d of %d visible objects found, %d false alarms, largest error %.3f of the diameter\n",
-         found, visible, false_alarms, worst);
+  printf("%d of %d visible objects found, %d false alarms, largest error %.3f of the diameter\n", found, visible,
+         false_alarms, worst);
   EXPECT_GE(visible, 1);
   EXPECT_GE(2 * found, visible);
   EXPECT_LE(false_alarms, 2);
@@ -205,8 +203,7 @@ TEST_F(RecognizerTest, StrideDoesNotMatter) {
     std::copy_n(frame.left.view().row(y), 640, left.data() + y * 700);
     std::copy_n(frame.right.view().row(y), 640, right.data() + y * 700);
   }
-  ASSERT_EQ(TheRecognizer().Process({left.data(), 640, 480, 700}, {right.data(), 640, 480, 700},
-                                    nullptr, result_),
+  ASSERT_EQ(TheRecognizer().Process({left.data(), 640, 480, 700}, {right.data(), 640, 480, 700}, nullptr, result_),
             RecognizerError::kOk);
   EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), expected);
 }
@@ -234,8 +231,8 @@ TEST_F(RecognizerTest, StatisticsDescribeTheFrame) {
   EXPECT_EQ(s.right_segments.used, TheRecognizer().right_segments().size());
   EXPECT_EQ(s.lines.used, TheRecognizer().lines().size());
   EXPECT_EQ(s.detections.used, result_.detections.size());
-  for (const ListUse& use : {s.left_segments, s.right_segments, s.lines, s.line_sets,
-                             s.correspondences, s.hypotheses, s.detections}) {
+  for (const ListUse& use :
+       {s.left_segments, s.right_segments, s.lines, s.line_sets, s.correspondences, s.hypotheses, s.detections}) {
     EXPECT_GT(use.capacity, 0U);
     EXPECT_LE(use.used, use.capacity);
   }
@@ -244,8 +241,7 @@ TEST_F(RecognizerTest, StatisticsDescribeTheFrame) {
     EXPECT_TRUE(d.score >= 0 && d.score <= 1);
     EXPECT_TRUE(d.visible_fraction >= 0 && d.visible_fraction <= 1.001F);
     EXPECT_LE(d.score, result_.detections[i == 0 ? 0 : i - 1].score);
-    for (const SetMember& m : TheRecognizer().line_set(i))
-      EXPECT_LT(m.line, TheRecognizer().lines().size());
+    for (const SetMember& m : TheRecognizer().line_set(i)) EXPECT_LT(m.line, TheRecognizer().lines().size());
   }
 }
 
@@ -279,10 +275,8 @@ TEST_F(RecognizerTest, RefusesImagesOfAnotherSize) {
   low.height = 479;
   none.data = nullptr;
   for (const ImageView& bad : {narrow, low, none}) {
-    EXPECT_EQ(TheRecognizer().Process(bad, good, nullptr, result_),
-              RecognizerError::kImageSizeMismatch);
-    EXPECT_EQ(TheRecognizer().Process(good, bad, nullptr, result_),
-              RecognizerError::kImageSizeMismatch);
+    EXPECT_EQ(TheRecognizer().Process(bad, good, nullptr, result_), RecognizerError::kImageSizeMismatch);
+    EXPECT_EQ(TheRecognizer().Process(good, bad, nullptr, result_), RecognizerError::kImageSizeMismatch);
     EXPECT_TRUE(result_.detections.empty());
   }
 }
@@ -308,8 +302,7 @@ TEST_F(RecognizerTest, RefusesBadCalibrationsAndKeepsTheGoodOne) {
   const StereoImages frame = testing::GoldenFrame(0);
   ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
   const std::string before = testing::DumpAll(TheRecognizer(), result_);
-  for (const auto& [width, height] :
-       {std::pair(641, 480), {640, 481}, {63, 480}, {640, 63}, {0, 0}, {-640, 480}}) {
+  for (const auto& [width, height] : {std::pair(641, 480), {640, 481}, {63, 480}, {640, 63}, {0, 0}, {-640, 480}}) {
     StereoCalibration c = testing::GoldenCalibration();
     c.width = width;
     c.height = height;

@@ -31,9 +31,9 @@ TEST_F(PoolTest, AllOfCyclonesHeapIsInIt) {
 }
 
 // The claim of the fixed memory: whatever the size of the message, publishing makes no heap call once the subscriber is
-// there, on any thread, acknowledgements included. Beside it Cyclone makes a few in discovery, and for retransmissions to a
-// subscriber that a busy machine leaves behind. Those come now and then; a call that publishing makes would come with
-// every frame. Hence many short windows, of which some must see none at all.
+// there, on any thread, acknowledgements included. Beside it Cyclone makes a few in discovery, and for retransmissions
+// to a subscriber that a busy machine leaves behind. Those come now and then; a call that publishing makes would come
+// with every frame. Hence many short windows, of which some must see none at all.
 TEST_F(PoolTest, PublishingToAnotherProcessAllocatesNothing) {
   constexpr std::chrono::microseconds kPace{10000};
   constexpr int kWindows = 15, kFrames = 15, kSilent = 3;

@@ -18,8 +18,8 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using test::Process;
 
-// Handing over a frame is a copy of some 10 kB: microseconds. A network that held it up would do so for up to the 100 ms
-// that a reliable writer may block. Between them lies what a machine that others use as well takes from any thread.
+// Handing over a frame is a copy of some 10 kB: microseconds. A network that held it up would do so for up to the 100
+// ms that a reliable writer may block. Between them lies what a machine that others use as well takes from any thread.
 constexpr milliseconds kNoStall{20};
 // Peers that are silent for that long are forgotten, and their memory with them (DDS default lease).
 constexpr seconds kLease{10};
@@ -57,8 +57,8 @@ class StressTest : public test::BusTest {
     return lowest;
   }
 
-  // One that is remembered takes 23 KiB. Tables and buffers that the dead made grow stay: 54 KiB were measured after 5 and
-  // 111 after 50, so `residue_kib` is far below what all of them would take.
+  // One that is remembered takes 23 KiB. Tables and buffers that the dead made grow stay: 54 KiB were measured after 5
+  // and 111 after 50, so `residue_kib` is far below what all of them would take.
   void KillSubscribers(int count, std::size_t residue_kib) {
     ExpectHealthy();
     const std::size_t before = UsedKib();

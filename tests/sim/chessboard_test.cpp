@@ -33,7 +33,8 @@ std::vector<cv::Point3f> BoardCorners() {
 Scene Board(const Pose& T_world_board) {
   const float width = kSquare * (kColumns + 1), height = kSquare * (kRows + 1);
   Scene scene;
-  scene.meshes = {MakeBox({width, height, 0.002F}), MakeBox({width + 0.05F, height + 0.05F, 0.002F}), MakeBox({6, 6, 0.1F})};
+  scene.meshes = {MakeBox({width, height, 0.002F}), MakeBox({width + 0.05F, height + 0.05F, 0.002F}),
+                  MakeBox({6, 6, 0.1F})};
   Instance board, margin, wall;
   board.mesh = 0;
   board.T_world_object = T_world_board;
@@ -92,8 +93,8 @@ void CheckEye(const Views& views, int eye, const CameraIntrinsics& truth, const 
   cv::Mat K = cv::Mat::eye(3, 3, CV_64F), D = cv::Mat::zeros(1, 5, CV_64F);
   std::vector<cv::Mat> rotations, translations;
   cv::Mat intrinsic_sigma, extrinsic_sigma, errors;
-  const double rms = cv::calibrateCamera(views.board, views.corners[static_cast<std::size_t>(eye)], size, K, D, rotations,
-                                         translations, intrinsic_sigma, extrinsic_sigma, errors);
+  const double rms = cv::calibrateCamera(views.board, views.corners[static_cast<std::size_t>(eye)], size, K, D,
+                                         rotations, translations, intrinsic_sigma, extrinsic_sigma, errors);
   EXPECT_LT(rms, 0.1);
   const std::array<double, 9> found = {K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2),
                                        K.at<double>(1, 2), D.at<double>(0),    D.at<double>(1),
@@ -109,7 +110,9 @@ void CheckEye(const Views& views, int eye, const CameraIntrinsics& truth, const 
   }
 }
 
-cv::Mat MatrixOf(const CameraIntrinsics& c) { return (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1); }
+cv::Mat MatrixOf(const CameraIntrinsics& c) {
+  return (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
+}
 cv::Mat DistortionOf(const CameraIntrinsics& c) { return (cv::Mat_<double>(1, 5) << c.k1, c.k2, c.p1, c.p2, c.k3); }
 
 Pose ToPose(const cv::Mat& rotation, const cv::Mat& translation) {
@@ -128,8 +131,8 @@ Vector3d RotationVector(const Matrix3d& R) {
 
 Pose BoardPose(const Views& views, int eye, std::size_t view, const CameraIntrinsics& c) {
   cv::Mat rotation, translation;
-  cv::solvePnP(views.board[view], views.corners[static_cast<std::size_t>(eye)][view], MatrixOf(c), DistortionOf(c), rotation,
-               translation);
+  cv::solvePnP(views.board[view], views.corners[static_cast<std::size_t>(eye)][view], MatrixOf(c), DistortionOf(c),
+               rotation, translation);
   return ToPose(rotation, translation);
 }
 

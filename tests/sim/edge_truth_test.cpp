@@ -20,9 +20,7 @@ TEST(SharpEdges, OfABoxAreTwelve) {
 }
 
 // The rounding of a cylinder with 64 sides is no edge, its two rims are.
-TEST(SharpEdges, OfACylinderAreItsRims) {
-  EXPECT_EQ(SharpEdges(MakeCylinder(0.05F, 0.1F, 64)).size(), 128U);
-}
+TEST(SharpEdges, OfACylinderAreItsRims) { EXPECT_EQ(SharpEdges(MakeCylinder(0.05F, 0.1F, 64)).size(), 128U); }
 
 TEST(SharpEdges, VerticesAtOnePlaceAreOne) {
   Mesh box = MakeBox({0.3F, 0.2F, 0.15F}), apart;

@@ -35,14 +35,17 @@ Scene Step(double angle_rad, double offset_px) {
 double Bilinear(const dataset::GrayImage& image, const Eigen::Vector2d& p) {
   const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
   const double u = p.x() - x, v = p.y() - y;
-  const auto at = [&](int i, int j) { return double{static_cast<double>(image.pixels[static_cast<std::size_t>(j * image.width + i)])}; };
+  const auto at = [&](int i, int j) {
+    return double{static_cast<double>(image.pixels[static_cast<std::size_t>(j * image.width + i)])};
+  };
   return (1 - v) * ((1 - u) * at(x, y) + u * at(x + 1, y)) + v * ((1 - u) * at(x, y + 1) + u * at(x + 1, y + 1));
 }
 
 // Where the step is along the normal at `along_px`: the place whose ideal step has the profile's
 // integral, which interpolation between pixels keeps.
 double EdgeAt(const dataset::GrayImage& image, const Eigen::Vector2d& normal, double along_px) {
-  const Eigen::Vector2d middle = Eigen::Vector2d::Constant(0.5 * (kSide - 1)) + along_px * Eigen::Vector2d(-normal.y(), normal.x());
+  const Eigen::Vector2d middle =
+      Eigen::Vector2d::Constant(0.5 * (kSide - 1)) + along_px * Eigen::Vector2d(-normal.y(), normal.x());
   constexpr int kSteps = 40;
   constexpr double kStep = 0.1;  // px; the step within 4 px, its two levels from 4 to 8 px off
   double low = 0, high = 0, sum = 0;
@@ -180,17 +183,20 @@ TEST(DirectLight, AgreesWithTheIntegralOverTheLight) {
   scene.instances = {floor};
   scene.ambient_up = scene.ambient_down = 0;
   // Behind the camera, shining forwards; another one beside it, so that lights are chosen among.
-  scene.lights = {{{0.6F, 0.2F, -0.5F}, {0.3F, 0, 0}, {0, 0.4F, 0}, 2}, {{-1, 0, 0.2F}, {0, 0.2F, 0}, {-0.1F, 0, 0}, 1}};
+  scene.lights = {{{0.6F, 0.2F, -0.5F}, {0.3F, 0, 0}, {0, 0.4F, 0}, 2},
+                  {{-1, 0, 0.2F}, {0, 0.2F, 0}, {-0.1F, 0, 0}, 1}};
   const RadianceImage image = Renderer(scene).Render(Pinhole(), {.samples_per_side = 6});
   double expected = 0;
   for (const AreaLight& light : scene.lights) {
     constexpr int kCells = 60;
     const Vector3 shine = light.half_u.cross(light.half_v).normalized();
     for (int i = 0; i < kCells * kCells; ++i) {
-      const float u = 2 * (static_cast<float>(i % kCells) + 0.5F) / kCells - 1, v = 2 * (static_cast<float>(i / kCells) + 0.5F) / kCells - 1;
+      const float u = 2 * (static_cast<float>(i % kCells) + 0.5F) / kCells - 1,
+                  v = 2 * (static_cast<float>(i / kCells) + 0.5F) / kCells - 1;
       const Vector3 to = light.centre + u * light.half_u + v * light.half_v - Vector3(0, 0, 1);
       const double r2 = double{to.squaredNorm()};
-      expected += double{light.intensity} * double{-to.z()} * std::max(0.0, -double{shine.dot(to)}) / (r2 * r2) / (kCells * kCells);
+      expected += double{light.intensity} * double{-to.z()} * std::max(0.0, -double{shine.dot(to)}) / (r2 * r2) /
+                  (kCells * kCells);
     }
   }
   double mean = 0;

@@ -97,7 +97,8 @@ TEST_F(ScenarioFileTest, ErrorsNameFileLineAndKey) {
 
 TEST_F(ScenarioFileTest, FixedPosesAreKept) {
   const auto spec = Read(
-      "objects:\n  - model: book\n    position_m: { x: 0.1, y: -0.05, z: 0.2 }\n    rotation_deg: { z: 90 }\n    visible: [0, 1]\n"
+      "objects:\n  - model: book\n    position_m: { x: 0.1, y: -0.05, z: 0.2 }\n    rotation_deg: { z: 90 }\n    "
+      "visible: [0, 1]\n"
       "clutter: { count: 0 }\n");
   ASSERT_TRUE(spec) << spec.error();
   const auto scenario = MakeScenario(*spec, 3, test::BoxAndBook());

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "opencv_projection.h"
-#include "sim/scenario_video.h"
 #include "sim/lens.h"
+#include "sim/scenario_video.h"
 #include "test_scenes.h"
 
 namespace wirepose::sim {

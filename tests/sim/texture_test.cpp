@@ -21,9 +21,10 @@ Vector3 AnyPoint(Random& random) {
 
 TEST(Texture, AlbedoStaysInRangeAndIsAFunctionOfThePlace) {
   Random random(31);
-  for (const Texture texture : {Texture::kPlain, Texture::kWood, Texture::kStone, Texture::kTiles, Texture::kPanels,
-                                Texture::kChecker, Texture::kLabel, Texture::kMarble, Texture::kSteel, Texture::kParcel,
-                                Texture::kGrocery, Texture::kBook, Texture::kPoster, Texture::kFridge, Texture::kParts}) {
+  for (const Texture texture :
+       {Texture::kPlain, Texture::kWood, Texture::kStone, Texture::kTiles, Texture::kPanels, Texture::kChecker,
+        Texture::kLabel, Texture::kMarble, Texture::kSteel, Texture::kParcel, Texture::kGrocery, Texture::kBook,
+        Texture::kPoster, Texture::kFridge, Texture::kParts}) {
     for (const Mapping mapping : {Mapping::kBox, Mapping::kCylinder}) {
       for (std::uint32_t seed = 0; seed < 8; ++seed) {
         const Material material{texture, mapping, 0.9F, 0.1F, 0.03F, 0.1F, seed};

@@ -8,8 +8,8 @@
 namespace wirepose {
 namespace {
 
-constexpr std::size_t kBudget = 8 * 1024 * 1024;   // docs/memory.md: at 640 x 480 with 16 models
-constexpr std::size_t kMayBeMissing = 16 * 1024;   // parameters, counts and padding, which have no row
+constexpr std::size_t kBudget = 8 * 1024 * 1024;  // docs/memory.md: at 640 x 480 with 16 models
+constexpr std::size_t kMayBeMissing = 16 * 1024;  // parameters, counts and padding, which have no row
 
 struct Member {
   const char* name;
@@ -19,7 +19,8 @@ struct Member {
 };
 
 constexpr Member kMembers[] = {
-    {"rectification maps", sizeof(Rectification), 1, "one node every 16 px", "both eyes; between nodes positions are linear"},
+    {"rectification maps", sizeof(Rectification), 1, "one node every 16 px",
+     "both eyes; between nodes positions are linear"},
     {"prepared models", sizeof(PreparedModel), kMaxModels, "kMaxModels, kMaxModelEdges, kMaxModelSetMembers",
      "what matching reads of each model"},
     {"model views", sizeof(ModelView), kMaxModels, "kMaxModels", "spans into the model files, which the caller owns"},
@@ -32,7 +33,8 @@ constexpr Member kMembers[] = {
     {"edge maps", sizeof(EdgeMap), 2, "kMaxPixels x 16 directions", "one look-up a sample when poses are scored"},
     {"2D segments", sizeof(Segments), 2, "kMaxSegments", "real kitchens show 150 to 300; the longest are kept"},
     {"3D lines", sizeof(Lines3), 1, "kMaxSegments", "one a left segment"},
-    {"image line sets", sizeof(ImageLineSets), 1, "kMaxImageLinePairs, twice", "collected by quality, then grouped by base line"},
+    {"image line sets", sizeof(ImageLineSets), 1, "kMaxImageLinePairs, twice",
+     "collected by quality, then grouped by base line"},
     {"corresponding pairs", sizeof(CorrespondingPairs), 1, "kMaxCorrespondences", "of one model at a time"},
     {"hypotheses", sizeof(Hypotheses), 1, "kMaxHypotheses", "of one model at a time"},
     {"corresponding sets", sizeof(CorrespondingSets), 1, "kMaxCandidates", "of one model at a time"},
@@ -54,20 +56,22 @@ int Report() {
     if (m.count == 1) {
       std::printf("| %s | %.1f | %s | %s |\n", m.name, Kib(m.bytes), m.capacity, m.reason);
     } else {
-      std::printf("| %s | %.1f = %zu x %.1f | %s | %s |\n", m.name, Kib(m.bytes * m.count), m.count, Kib(m.bytes), m.capacity,
-                  m.reason);
+      std::printf("| %s | %.1f = %zu x %.1f | %s | %s |\n", m.name, Kib(m.bytes * m.count), m.count, Kib(m.bytes),
+                  m.capacity, m.reason);
     }
   }
   std::printf("| parameters, counts, padding | %.1f | | |\n", Kib(sizeof(Recognizer) - sum));
   std::printf("| **whole recognizer** | **%.1f = %.2f MiB** | | budget %zu MiB |\n", Kib(sizeof(Recognizer)),
               Kib(sizeof(Recognizer)) / 1024, kBudget >> 20);
   if (sizeof(Recognizer) > kBudget) {
-    std::fprintf(stderr, "memory_report: the recognizer takes %zu bytes, more than its budget of %zu; see src/capacities.h\n",
+    std::fprintf(stderr,
+                 "memory_report: the recognizer takes %zu bytes, more than its budget of %zu; see src/capacities.h\n",
                  sizeof(Recognizer), kBudget);
     return 1;
   }
   if (sum > sizeof(Recognizer) || sizeof(Recognizer) - sum > kMayBeMissing) {
-    std::fprintf(stderr, "memory_report: the members sum up to %zu bytes, the recognizer has %zu; add what is missing\n", sum,
+    std::fprintf(stderr,
+                 "memory_report: the members sum up to %zu bytes, the recognizer has %zu; add what is missing\n", sum,
                  sizeof(Recognizer));
     return 1;
   }

@@ -34,7 +34,8 @@ std::unique_ptr<DisparityMap> MapOf(const GrayImage& left, const GrayImage& righ
 // The slow twin: every array in full, every definition as it is written down.
 class Twin {
  public:
-  Twin(const GrayImage& left, const GrayImage& right) : w_(left.width / 2), h_(left.height / 2), left_(left), right_(right) {
+  Twin(const GrayImage& left, const GrayImage& right)
+      : w_(left.width / 2), h_(left.height / 2), left_(left), right_(right) {
     Sum();
     Choose();
   }
@@ -85,7 +86,8 @@ class Twin {
     return next;
   }
   void Add(const Path& path, int x, int y) {
-    for (int d = 0; d < kN; ++d) sum_[Index(x, y) * kN + static_cast<std::size_t>(d)] += path[static_cast<std::size_t>(d)];
+    for (int d = 0; d < kN; ++d)
+      sum_[Index(x, y) * kN + static_cast<std::size_t>(d)] += path[static_cast<std::size_t>(d)];
   }
   void Sum() {
     sum_.assign(static_cast<std::size_t>(w_ * h_) * kN, 0);
@@ -133,7 +135,8 @@ TEST(DisparityMap, AgreesWithTheTwin) {
   for (int k = 0; k < testing::Cases(10); ++k) {
     const double shift = random.Uniform(3, 25), slope = random.Uniform(-0.1, 0.1);
     const auto seed = random.Next();
-    const GrayImage left = Paint(96, 30, [&](int x, int y) { return 128 + 100 * testing::Texture(x, y, 5, seed) + random.Uniform(-8, 8); });
+    const GrayImage left = Paint(
+        96, 30, [&](int x, int y) { return 128 + 100 * testing::Texture(x, y, 5, seed) + random.Uniform(-8, 8); });
     const GrayImage right = Paint(96, 30, [&](int x, int y) {
       return 128 + 100 * testing::Texture(x + shift + slope * y, y, 5, seed) + random.Uniform(-8, 8);
     });
@@ -141,7 +144,8 @@ TEST(DisparityMap, AgreesWithTheTwin) {
     const Twin twin(left, right);
     for (int y = 0; y < map->height; ++y) {
       for (int x = 0; x < map->width; ++x) {
-        ASSERT_EQ(map->disparity[static_cast<std::size_t>(y * DisparityMap::kMaxWidth + x)], twin.At(x, y)) << x << " " << y;
+        ASSERT_EQ(map->disparity[static_cast<std::size_t>(y * DisparityMap::kMaxWidth + x)], twin.At(x, y))
+            << x << " " << y;
       }
     }
   }
@@ -154,7 +158,8 @@ TEST(DisparityMap, MeasuresPlanes) {
     const double d0 = random.Uniform(10, 110), by_row = random.Uniform(-0.08, 0.08);
     const auto seed = random.Next();
     const auto expected = [&](int y) { return d0 + by_row * (y - 120); };
-    const GrayImage left = Paint(320, 240, [&](int x, int y) { return 120 + 70 * testing::Texture(x, y, 6, seed) + testing::Gaussian(random); });
+    const GrayImage left = Paint(
+        320, 240, [&](int x, int y) { return 120 + 70 * testing::Texture(x, y, 6, seed) + testing::Gaussian(random); });
     const GrayImage right = Paint(320, 240, [&](int x, int y) {
       return 0.66 * (120 + 70 * testing::Texture(x + expected(y), y, 6, seed)) + testing::Gaussian(random);
     });

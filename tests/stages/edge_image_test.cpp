@@ -42,9 +42,8 @@ std::unique_ptr<Ridges> Find(const GrayImage& image) {
 cv::Mat Binomial(const GrayImage& image) {
   const cv::Mat kernel = (cv::Mat_<float>(1, 5) << 1, 4, 6, 4, 1);
   cv::Mat out;
-  cv::sepFilter2D(
-      cv::Mat(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())),
-      out, CV_32F, kernel, kernel, {-1, -1}, 0, cv::BORDER_REPLICATE);
+  cv::sepFilter2D(cv::Mat(image.height, image.width, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())), out,
+                  CV_32F, kernel, kernel, {-1, -1}, 0, cv::BORDER_REPLICATE);
   return out;
 }
 
@@ -72,12 +71,10 @@ TEST(Gradient, AgreesWithDoublePrecision) {
   const cv::Mat exact = Binomial(image);
   for (int y = 1; y < 199; ++y) {
     for (int x = 1; x < 319; ++x) {
-      const double gx = (static_cast<double>(exact.at<float>(y, x + 1)) -
-                         static_cast<double>(exact.at<float>(y, x - 1))) /
-                        16;
-      const double gy = (static_cast<double>(exact.at<float>(y + 1, x)) -
-                         static_cast<double>(exact.at<float>(y - 1, x))) /
-                        16;
+      const double gx =
+          (static_cast<double>(exact.at<float>(y, x + 1)) - static_cast<double>(exact.at<float>(y, x - 1))) / 16;
+      const double gy =
+          (static_cast<double>(exact.at<float>(y + 1, x)) - static_cast<double>(exact.at<float>(y - 1, x))) / 16;
       const std::size_t i = EdgeImage::Index(x, y);
       ASSERT_NEAR(ridges->image.gx[i], gx, 1);
       ASSERT_NEAR(ridges->image.gy[i], gy, 1);
@@ -98,14 +95,10 @@ TEST(Gradient, UnitIsGreyLevelsPerPixel) {
 TEST(RidgeFinding, StepEdgeAtEveryAngle) {
   Random random(5);
   for (int k = 0; k < Cases(180); ++k) {
-    const double angle = k * 2 * M_PI / Cases(180) + random.Uniform(0, 0.03),
-                 offset = random.Uniform(-20, 20);
+    const double angle = k * 2 * M_PI / Cases(180) + random.Uniform(0, 0.03), offset = random.Uniform(-20, 20);
     const double nx = std::cos(angle), ny = std::sin(angle);
-    const auto distance = [&](double x, double y) {
-      return nx * (x - 80) + ny * (y - 80) - offset;
-    };
-    const auto ridges = Find(
-        Paint(160, 160, [&](int x, int y) { return 60 + 80 * testing::Step(distance(x, y)); }));
+    const auto distance = [&](double x, double y) { return nx * (x - 80) + ny * (y - 80) - offset; };
+    const auto ridges = Find(Paint(160, 160, [&](int x, int y) { return 60 + 80 * testing::Step(distance(x, y)); }));
     const EdgeImage& e = ridges->image;
     std::set<int> crossed;
     for (std::uint32_t r = 0; r < e.ridge_count; ++r) {
@@ -118,8 +111,8 @@ TEST(RidgeFinding, StepEdgeAtEveryAngle) {
     // Rows (or columns) in which the edge is inside by more than the border.
     int expected = 0;
     for (int c = 3; c < 157; ++c) {
-      const double other = std::abs(nx) > std::abs(ny) ? 80 + (offset - ny * (c - 80)) / nx
-                                                       : 80 + (offset - nx * (c - 80)) / ny;
+      const double other =
+          std::abs(nx) > std::abs(ny) ? 80 + (offset - ny * (c - 80)) / nx : 80 + (offset - nx * (c - 80)) / ny;
       if (other < 4 || other > 155) continue;
       ++expected;
       EXPECT_TRUE(crossed.contains(c)) << angle << " " << c;
@@ -144,8 +137,7 @@ TEST(RidgeFinding, FlatImageGivesNone) {
 TEST(RidgeFinding, StaysAwayFromWhatTheLensDidNotSee) {
   auto map = testing::WholeImage(200, 100);
   for (int y = 0; y < 100; ++y)
-    map->valid[static_cast<std::size_t>(y)] = {static_cast<std::int16_t>(y),
-                                               static_cast<std::int16_t>(200 - y)};
+    map->valid[static_cast<std::size_t>(y)] = {static_cast<std::int16_t>(y), static_cast<std::int16_t>(200 - y)};
   const auto ridges = Find(Noise(200, 100, 128, 60, 7), *map);
   EXPECT_GT(ridges->image.ridge_count, 300U);
   for (std::uint32_t r = 0; r < ridges->image.ridge_count; ++r) {
@@ -158,9 +150,8 @@ TEST(RidgeFinding, StaysAwayFromWhatTheLensDidNotSee) {
 // More ridges than fit: the strongest stay, the list is sorted, what was dropped is counted and
 // unmarked.
 TEST(RidgeFinding, OverflowKeepsTheStrongest) {
-  const auto ridges = Find(Paint(640, 480, [](int x, int y) {
-    return 128 + (x % 4 < 2 ? 1 : -1) * (20 + 0.1 * x + 0.1 * (y % 64));
-  }));
+  const auto ridges =
+      Find(Paint(640, 480, [](int x, int y) { return 128 + (x % 4 < 2 ? 1 : -1) * (20 + 0.1 * x + 0.1 * (y % 64)); }));
   const EdgeImage& e = ridges->image;
   ASSERT_EQ(e.ridge_count, kMaxRidgePixels);
   EXPECT_GT(e.ridge_dropped, 0U);

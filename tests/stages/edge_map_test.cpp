@@ -26,21 +26,17 @@ double DistanceToBorder(double dx, double dy) {
 TEST(EdgeDirection, AgreesWithTheAngle) {
   Random random(1);
   for (int i = 0; i < 100000; ++i) {
-    const double angle = random.Uniform(-M_PI, M_PI),
-                 length = std::pow(10.0, random.Uniform(-3, 4));
+    const double angle = random.Uniform(-M_PI, M_PI), length = std::pow(10.0, random.Uniform(-3, 4));
     const double dx = length * std::cos(angle), dy = length * std::sin(angle);
     if (DistanceToBorder(dx, dy) < 1e-4) continue;
-    ASSERT_EQ(EdgeMap::Direction(static_cast<float>(dx), static_cast<float>(dy)),
-              SectorByAngle(dx, dy))
-        << angle;
+    ASSERT_EQ(EdgeMap::Direction(static_cast<float>(dx), static_cast<float>(dy)), SectorByAngle(dx, dy)) << angle;
   }
 }
 
 TEST(EdgeDirection, HalfATurnChangesNothing) {
   Random random(2);
   for (int i = 0; i < 10000; ++i) {
-    const auto dx = static_cast<float>(random.Uniform(-1, 1)),
-               dy = static_cast<float>(random.Uniform(-1, 1));
+    const auto dx = static_cast<float>(random.Uniform(-1, 1)), dy = static_cast<float>(random.Uniform(-1, 1));
     ASSERT_EQ(EdgeMap::Direction(dx, dy), EdgeMap::Direction(-dx, -dy));
   }
 }
@@ -48,8 +44,7 @@ TEST(EdgeDirection, HalfATurnChangesNothing) {
 // Axes and diagonals lie on borders of sectors: either neighbour will do, since look-ups have a
 // tolerance of one.
 TEST(EdgeDirection, AxesAreInRange) {
-  for (const auto& [dx, dy] :
-       {std::pair(1, 0), {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {0, 0}}) {
+  for (const auto& [dx, dy] : {std::pair(1, 0), {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {0, 0}}) {
     const int d = EdgeMap::Direction(static_cast<float>(dx), static_cast<float>(dy));
     EXPECT_GE(d, 0);
     EXPECT_LT(d, EdgeMap::kDirections);
@@ -67,8 +62,7 @@ std::unique_ptr<RandomRidges> Build(std::uint64_t seed, int width, int height, i
   out->edges.width = width;
   out->edges.height = height;
   for (int i = 0; i < count; ++i) {
-    const std::size_t at =
-        EdgeImage::Index(3 + random.Below(width - 6), 3 + random.Below(height - 6));
+    const std::size_t at = EdgeImage::Index(3 + random.Below(width - 6), 3 + random.Below(height - 6));
     out->edges.gx[at] = static_cast<std::int16_t>(random.Below(2001) - 1000);
     out->edges.gy[at] = static_cast<std::int16_t>(random.Below(2001) - 1000);
     out->edges.ridge_pixels[out->edges.ridge_count++] = static_cast<std::uint32_t>(at);
@@ -85,8 +79,7 @@ bool FindByBruteForce(const EdgeImage& edges, int x, int y, int direction, int s
     const int dy = static_cast<int>(edges.ridge_pixels[k] / kMaxImageWidth) - y;
     if (dx * dx + dy * dy > square) continue;
     const std::uint32_t i = edges.ridge_pixels[k];
-    const int own =
-        EdgeMap::Direction(static_cast<float>(-edges.gy[i]), static_cast<float>(edges.gx[i]));
+    const int own = EdgeMap::Direction(static_cast<float>(-edges.gy[i]), static_cast<float>(edges.gx[i]));
     const int turn = (direction - own + EdgeMap::kDirections) % EdgeMap::kDirections;
     if (turn <= 1 || turn == EdgeMap::kDirections - 1) return true;
   }
@@ -103,8 +96,7 @@ TEST(EdgeMapLookUp, AgreesWithBruteForce) {
     for (int i = 0; i < Cases(10000); ++i) {
       const double x = random.Uniform(4, 115.49), y = random.Uniform(4, 85.49);
       const int direction = random.Below(EdgeMap::kDirections);
-      const int u = static_cast<int>(std::floor(x + 0.5)),
-                v = static_cast<int>(std::floor(y + 0.5));
+      const int u = static_cast<int>(std::floor(x + 0.5)), v = static_cast<int>(std::floor(y + 0.5));
       const bool found = r->map.HasEdge(static_cast<float>(x), static_cast<float>(y), direction);
       if (FindByBruteForce(r->edges, u, v, direction, 5)) {
         ASSERT_TRUE(found);
@@ -127,8 +119,8 @@ TEST(EdgeMapLookUp, BackgroundIsTheRateOfRandomHits) {
         set += r->map.HasEdge(static_cast<float>(x), static_cast<float>(y), d) ? 1 : 0;
     }
   }
-  EXPECT_NEAR(static_cast<double>(r->map.background),
-              static_cast<double>(set) / (292.0 * 392 * EdgeMap::kDirections), 0.005);
+  EXPECT_NEAR(static_cast<double>(r->map.background), static_cast<double>(set) / (292.0 * 392 * EdgeMap::kDirections),
+              0.005);
 }
 
 TEST(EdgeMapLookUp, NothingRemainsOfAnEarlierImage) {

@@ -11,8 +11,7 @@ namespace {
 using testing::Cases;
 using testing::Random;
 
-Line3 MakeLine(const RectifiedCamera& camera, const Vector3d& a, const Vector3d& b,
-               float sigma_px = 0.1F) {
+Line3 MakeLine(const RectifiedCamera& camera, const Vector3d& a, const Vector3d& b, float sigma_px = 0.1F) {
   Line3 line;
   line.has_depth = true;
   line.a = a.cast<float>();
@@ -60,8 +59,7 @@ double DistanceOf(const Line3& p, const Line3& q) {
 double FarthestOf(const Line3& p, const Line3& q) {
   double farthest = 0;
   for (const Vector3& s : {p.a, p.b}) {
-    for (const Vector3& t : {q.a, q.b})
-      farthest = std::max(farthest, static_cast<double>((s - t).norm()));
+    for (const Vector3& t : {q.a, q.b}) farthest = std::max(farthest, static_cast<double>((s - t).norm()));
   }
   return farthest;
 }
@@ -89,10 +87,8 @@ TEST(ParameterVector, AgreesWithGeometry) {
     if (std::sin(angle) > 0.25) {
       EXPECT_NEAR(static_cast<double>(pair.distance_m), DistanceOf(p, q), 1e-4);
     }
-    const bool parallel =
-        angle < static_cast<double>(LineSetParams{}.parallel_rad + pair.angle_sigma_rad);
-    if (std::abs(angle - static_cast<double>(LineSetParams{}.parallel_rad + pair.angle_sigma_rad)) >
-        0.01) {
+    const bool parallel = angle < static_cast<double>(LineSetParams{}.parallel_rad + pair.angle_sigma_rad);
+    if (std::abs(angle - static_cast<double>(LineSetParams{}.parallel_rad + pair.angle_sigma_rad)) > 0.01) {
       EXPECT_EQ(pair.kind == LineSetKind::kParallel, parallel);
     }
     ++checked;
@@ -107,8 +103,7 @@ TEST(ParameterVector, ExactParallels) {
   for (int k = 0; k < Cases(1000); ++k) {
     const Line3 base = AnyLine(random, camera);
     const Vector3d d = (base.b - base.a).cast<double>();
-    const Vector3d across =
-        d.cross(testing::AnyDirection(random)).normalized() * random.Uniform(0.02, 0.2);
+    const Vector3d across = d.cross(testing::AnyDirection(random)).normalized() * random.Uniform(0.02, 0.2);
     const Vector3d a = base.a.cast<double>() + across + 0.2 * d, b = a + 0.7 * d;
     const Line3 other = MakeLine(camera, a, b);
     if (other.segment.Length() < 12 || a.z() < 0.3 || b.z() < 0.3) continue;
@@ -211,12 +206,10 @@ TEST(Sigmas, AgreeWithMonteCarlo) {
   const RectifiedCamera camera = testing::TestCamera();
   for (int k = 0; k < Cases(60); ++k) {
     Line3 line = AnyLine(random, camera);
-    if (std::abs(line.a.z() - line.b.z()) > 0.2F)
-      continue;  // first-order formulas, taken at the middle
+    if (std::abs(line.a.z() - line.b.z()) > 0.2F) continue;  // first-order formulas, taken at the middle
     line.var_a = static_cast<float>(random.Uniform(0.01, 0.05));
     line.var_b = static_cast<float>(random.Uniform(0.01, 0.05));
-    line.cov_ab =
-        static_cast<float>(random.Uniform(-0.5, 0.5)) * std::sqrt(line.var_a * line.var_b);
+    line.cov_ab = static_cast<float>(random.Uniform(-0.5, 0.5)) * std::sqrt(line.var_a * line.var_b);
     const double sa = std::sqrt(static_cast<double>(line.var_a));
     const double c = static_cast<double>(line.cov_ab) / sa;
     const double sb = std::sqrt(static_cast<double>(line.var_b) - c * c);
@@ -230,13 +223,11 @@ TEST(Sigmas, AgreeWithMonteCarlo) {
         return camera.Triangulate(static_cast<double>(p.x()), static_cast<double>(p.y()), d);
       };
       const Vector3d a = at(line.segment.a, static_cast<double>(line.disparity_a_px) + sa * ga);
-      const Vector3d b =
-          at(line.segment.b, static_cast<double>(line.disparity_b_px) + c * ga + sb * gb);
+      const Vector3d b = at(line.segment.b, static_cast<double>(line.disparity_b_px) + c * ga + sb * gb);
       depth_square += std::pow(0.5 * (a.z() + b.z()) - true_depth, 2);
       angle_square += (b - a).normalized().cross(true_direction).squaredNorm();
     }
-    const double depth_sigma = std::sqrt(depth_square / kDraws),
-                 angle_sigma = std::sqrt(angle_square / kDraws);
+    const double depth_sigma = std::sqrt(depth_square / kDraws), angle_sigma = std::sqrt(angle_square / kDraws);
     EXPECT_NEAR(static_cast<double>(DepthSigma(camera, line)) / depth_sigma, 1, 0.15);
     // An upper bound: the part of the change that lies along the line turns nothing.
     EXPECT_GT(static_cast<double>(DirectionSigma(camera, line)), 0.8 * angle_sigma);

@@ -32,15 +32,13 @@ Pose PoseOf(const Hypothesis& h) { return {h.R.cast<double>(), h.t.cast<double>(
 
 double NearestError(const PreparedModel& model, Hypotheses& hypotheses, const Pose& truth) {
   double best = 1e9;
-  for (const Hypothesis& h : hypotheses.items())
-    best = std::min(best, testing::CornerError(model, PoseOf(h), truth));
+  for (const Hypothesis& h : hypotheses.items()) best = std::min(best, testing::CornerError(model, PoseOf(h), truth));
   return best;
 }
 
 // Index of the edge onto which the symmetry carries edge `e`.
 std::size_t Carried(const PreparedModel& model, const Pose& symmetry, std::size_t e) {
-  const Vector3d a = symmetry * model.edges[e].a.cast<double>(),
-                 b = symmetry * model.edges[e].b.cast<double>();
+  const Vector3d a = symmetry * model.edges[e].a.cast<double>(), b = symmetry * model.edges[e].b.cast<double>();
   for (std::size_t f = 0; f < model.edges.size(); ++f) {
     const Vector3d p = model.edges[f].a.cast<double>(), q = model.edges[f].b.cast<double>();
     if ((a - p).norm() + (b - q).norm() < 1e-4 || (a - q).norm() + (b - p).norm() < 1e-4) return f;
@@ -60,9 +58,7 @@ void TruePoseIsAmongHypotheses(const std::string& name, double min_share) {
     const auto scene = testing::MakeScene(random, *model, T);
     Match(*model, *scene, *matching);
     EXPECT_LE(matching->hypotheses.size(), kMaxHypotheses);
-    if (NearestError(*model, matching->hypotheses, T) <
-        0.1 * static_cast<double>(model->view.diameter_m))
-      ++hits;
+    if (NearestError(*model, matching->hypotheses, T) < 0.1 * static_cast<double>(model->view.diameter_m)) ++hits;
   }
   printf("%s: true pose among the hypotheses in %d of %d views\n", name.c_str(), hits, count);
   EXPECT_GE(hits, min_share * count);
@@ -90,13 +86,11 @@ TEST(CorrespondenceFinding, TrueEdgesAreProposed) {
         ++asked;
         bool proposed = false;
         for (const Pose& symmetry : model->symmetries) {
-          const std::size_t base =
-              Carried(*model, symmetry, static_cast<std::size_t>(scene->edge_of_line[pair.base]));
+          const std::size_t base = Carried(*model, symmetry, static_cast<std::size_t>(scene->edge_of_line[pair.base]));
           const std::size_t other =
               Carried(*model, symmetry, static_cast<std::size_t>(scene->edge_of_line[pair.other]));
           for (const CorrespondingPair& c : matching->pairs.items()) {
-            proposed =
-                proposed || (c.image_pair == p && c.base_edge == base && c.other_edge == other);
+            proposed = proposed || (c.image_pair == p && c.base_edge == base && c.other_edge == other);
           }
         }
         found += proposed ? 1 : 0;
@@ -117,14 +111,11 @@ TEST(CorrespondenceFinding, SymmetricDuplicatesAreNotSearchedTwice) {
   EXPECT_EQ(representatives, 3);
   Random random(3);
   const auto matching = std::make_unique<Matching>();
-  const auto scene = testing::MakeScene(
-      random, *model, testing::AnyView(random, *model, testing::TestCamera(), 300));
+  const auto scene = testing::MakeScene(random, *model, testing::AnyView(random, *model, testing::TestCamera(), 300));
   Match(*model, *scene, *matching);
   ASSERT_GT(matching->pairs.size(), 0U);
-  for (const CorrespondingPair& c : matching->pairs.items())
-    EXPECT_TRUE(model->edges[c.base_edge].representative);
-  for (const Hypothesis& h : matching->hypotheses.items())
-    EXPECT_TRUE(model->edges[h.base_edge].representative);
+  for (const CorrespondingPair& c : matching->pairs.items()) EXPECT_TRUE(model->edges[c.base_edge].representative);
+  for (const Hypothesis& h : matching->hypotheses.items()) EXPECT_TRUE(model->edges[h.base_edge].representative);
 }
 
 // A segment longer than every edge of the model corresponds to none.
@@ -135,8 +126,7 @@ TEST(CorrespondenceFinding, TooLongLinesMatchNothing) {
   Pose T;
   T.R = ExpSo3({0.4, 0.5, 0.1}) * (Matrix3d() << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished();
   T.t = {0, 0, 3};
-  const auto scene =
-      testing::MakeScene(random, *refrigerator, T, {.min_cover = 0.98, .clutter = 0});
+  const auto scene = testing::MakeScene(random, *refrigerator, T, {.min_cover = 0.98, .clutter = 0});
   Match(*book, *scene, *matching);
   for (const CorrespondingPair& c : matching->pairs.items()) {
     const ImageLinePair& pair = matching->sets.pairs[c.image_pair];
@@ -209,12 +199,9 @@ TEST(HypothesisMaking, ParallelPairGivesEveryAssignment) {
         Pose candidate{D * M.transpose(), {}};
         candidate.t = 0.5 * (ends[0][0] + ends[0][1]) - candidate.R * pm;
         const Vector3d eye = candidate.Inverse().t;
-        if (!testing::SeesEdgePoint(*model, e, 0.5, eye) ||
-            !testing::SeesEdgePoint(*model, f, 0.5, eye))
-          continue;
+        if (!testing::SeesEdgePoint(*model, e, 0.5, eye) || !testing::SeesEdgePoint(*model, f, 0.5, eye)) continue;
         ++expected;
-        EXPECT_LT(NearestError(*model, matching->hypotheses, candidate), 0.02)
-            << e << " " << f << " " << sign;
+        EXPECT_LT(NearestError(*model, matching->hypotheses, candidate), 0.02) << e << " " << f << " " << sign;
       }
     }
   }

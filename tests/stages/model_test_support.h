@@ -44,13 +44,11 @@ inline TestModel Compile(const mesh::Mesh& mesh) {
 }
 
 // The object near the middle of the image, its diameter `size_px` long, turned anyhow.
-inline Pose AnyView(Random& random, const PreparedModel& model, const RectifiedCamera& camera,
-                    double size_px) {
+inline Pose AnyView(Random& random, const PreparedModel& model, const RectifiedCamera& camera, double size_px) {
   const double z = camera.f * static_cast<double>(model.view.diameter_m) / size_px;
   Pose T;
   T.R = AnyRotation(random);
-  T.t = z * Vector3d(random.Uniform(-0.1, 0.1), random.Uniform(-0.08, 0.08), 1) -
-        T.R * model.centre.cast<double>();
+  T.t = z * Vector3d(random.Uniform(-0.1, 0.1), random.Uniform(-0.08, 0.08), 1) - T.R * model.centre.cast<double>();
   return T;
 }
 
@@ -71,15 +69,15 @@ inline double CornerError(const PreparedModel& model, const Pose& estimate, cons
 // Does a triangle that is not of face `a` or `b` hide `point` (model frame) from `eye`? Every
 // triangle is tried, in double precision. `margin` widens the triangles (negative: shrinks) and the
 // range of depths that hide, so that undecided cases can be told apart.
-inline bool HiddenByBruteForce(const ModelView& model, const Vector3d& eye, const Vector3d& point,
-                               int a, int b, double margin) {
+inline bool HiddenByBruteForce(const ModelView& model, const Vector3d& eye, const Vector3d& point, int a, int b,
+                               double margin) {
   const Vector3d ray = point - eye;
   for (const ModelTriangle& t : model.triangles) {
     if (t.face == a || t.face == b) continue;
     Matrix3d M;
     const Vector3d p0 = model.VertexPosition(t.vertex[0]).cast<double>();
-    M << model.VertexPosition(t.vertex[1]).cast<double>() - p0,
-        model.VertexPosition(t.vertex[2]).cast<double>() - p0, -ray;
+    M << model.VertexPosition(t.vertex[1]).cast<double>() - p0, model.VertexPosition(t.vertex[2]).cast<double>() - p0,
+        -ray;
     if (std::abs(M.determinant()) < 1e-15) continue;
     const Vector3d uvt = M.inverse() * (eye - p0);
     if (uvt.x() > -margin && uvt.y() > -margin && uvt.x() + uvt.y() < 1 + margin && uvt.z() > 0 &&
@@ -93,23 +91,20 @@ inline bool HiddenByBruteForce(const ModelView& model, const Vector3d& eye, cons
 inline bool TurnsToEye(const ModelView& model, int face, const Vector3d& eye) {
   if (face == kNoFace) return false;
   const ModelFace& f = model.faces[static_cast<std::size_t>(face)];
-  return Vector3(f.normal[0], f.normal[1], f.normal[2]).cast<double>().dot(eye) >
-         static_cast<double>(f.offset_m);
+  return Vector3(f.normal[0], f.normal[1], f.normal[2]).cast<double>().dot(eye) > static_cast<double>(f.offset_m);
 }
 
 // Is the point at share `s` of edge `e` seen?
-inline bool SeesEdgePoint(const PreparedModel& model, std::size_t e, double s, const Vector3d& eye,
-                          double margin = 0) {
+inline bool SeesEdgePoint(const PreparedModel& model, std::size_t e, double s, const Vector3d& eye, double margin = 0) {
   const ModelEdge& edge = model.view.edges[e];
-  if (!TurnsToEye(model.view, edge.face[0], eye) && !TurnsToEye(model.view, edge.face[1], eye))
-    return false;
+  if (!TurnsToEye(model.view, edge.face[0], eye) && !TurnsToEye(model.view, edge.face[1], eye)) return false;
   const Vector3d a = model.edges[e].a.cast<double>(), b = model.edges[e].b.cast<double>();
   return !HiddenByBruteForce(model.view, eye, a + s * (b - a), edge.face[0], edge.face[1], margin);
 }
 
 // The longest part of an edge that is seen, as shares of its length; nothing when it is hidden.
-inline std::optional<std::pair<double, double>> VisiblePart(const PreparedModel& model,
-                                                            std::size_t e, const Vector3d& eye) {
+inline std::optional<std::pair<double, double>> VisiblePart(const PreparedModel& model, std::size_t e,
+                                                            const Vector3d& eye) {
   constexpr int kSteps = 48;
   int best_begin = 0, best_end = 0, begin = 0;
   for (int k = 0; k <= kSteps; ++k) {
@@ -147,8 +142,7 @@ inline void PaintRidge(EdgeImage& edges, const Eigen::Vector2d& a, const Eigen::
     if (p.x() < 3 || p.y() < 3 || p.x() >= edges.width - 4 || p.y() >= edges.height - 4 ||
         edges.ridge_count >= kMaxRidgePixels)
       continue;
-    const std::size_t i =
-        EdgeImage::Index(static_cast<int>(p.x() + 0.5), static_cast<int>(p.y() + 0.5));
+    const std::size_t i = EdgeImage::Index(static_cast<int>(p.x() + 0.5), static_cast<int>(p.y() + 0.5));
     edges.gx[i] = static_cast<std::int16_t>(-1000 * d.y());
     edges.gy[i] = static_cast<std::int16_t>(1000 * d.x());
     edges.ridge_pixels[edges.ridge_count++] = static_cast<std::uint32_t>(i);
@@ -157,8 +151,7 @@ inline void PaintRidge(EdgeImage& edges, const Eigen::Vector2d& a, const Eigen::
 
 class IdealSceneMaker {
  public:
-  IdealSceneMaker(Random& random, const IdealOptions& options)
-      : random_(random), options_(options) {
+  IdealSceneMaker(Random& random, const IdealOptions& options) : random_(random), options_(options) {
     for (EdgeImage* edges : {&scene_->left_edges, &scene_->right_edges}) {
       edges->width = scene_->camera.width;
       edges->height = scene_->camera.height;
@@ -170,8 +163,7 @@ class IdealSceneMaker {
     for (std::size_t e = 0; e < model.edges.size(); ++e) {
       const auto part = VisiblePart(model, e, eye);
       if (!part) continue;
-      const Vector3d a = T * model.edges[e].a.cast<double>(),
-                     b = T * model.edges[e].b.cast<double>();
+      const Vector3d a = T * model.edges[e].a.cast<double>(), b = T * model.edges[e].b.cast<double>();
       Add(a + part->first * (b - a), a + part->second * (b - a), static_cast<int>(e));
     }
   }
@@ -182,9 +174,8 @@ class IdealSceneMaker {
       const Vector3d a = z * Vector3d(random_.Uniform(-0.5, 0.5), random_.Uniform(-0.4, 0.4), 1);
       Add(a, a + random_.Uniform(0.05, 0.4) * AnyDirection(random_), -1);
     }
-    std::sort(found_.begin(), found_.end(), [](const auto& p, const auto& q) {
-      return p.first.segment.Length() > q.first.segment.Length();
-    });
+    std::sort(found_.begin(), found_.end(),
+              [](const auto& p, const auto& q) { return p.first.segment.Length() > q.first.segment.Length(); });
     for (auto& [line, edge] : found_) {
       line.id = static_cast<std::uint16_t>(scene_->lines.size());
       scene_->lines.push_back(line);
@@ -208,8 +199,7 @@ class IdealSceneMaker {
     }
     PaintRidge(scene_->left_edges, pa.head<2>(), pb.head<2>());
     PaintRidge(scene_->right_edges, {pa.x() - pa.z(), pa.y()}, {pb.x() - pb.z(), pb.y()});
-    const double cover = random_.Uniform(options_.min_cover, 1),
-                 begin = random_.Uniform(0, 1 - cover);
+    const double cover = random_.Uniform(options_.min_cover, 1), begin = random_.Uniform(0, 1 - cover);
     Vector3d qa = pa + begin * (pb - pa), qb = pa + (begin + cover) * (pb - pa);
     if (random_.Chance(0.5)) std::swap(qa, qb);
     Line3 line;
@@ -231,9 +221,7 @@ class IdealSceneMaker {
       line.disparity_b_px = static_cast<float>(qb.z() + sigma * Gaussian(random_));
       line.var_a = line.var_b = static_cast<float>(sigma * sigma + 0.01);
       const auto place = [&](const Vector2& p, float d) -> Vector3 {
-        return camera
-            .Triangulate(static_cast<double>(p.x()), static_cast<double>(p.y()),
-                         static_cast<double>(d))
+        return camera.Triangulate(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(d))
             .cast<float>();
       };
       line.a = place(line.segment.a, line.disparity_a_px);
@@ -248,8 +236,8 @@ class IdealSceneMaker {
   std::vector<std::pair<Line3, int>> found_;
 };
 
-inline std::unique_ptr<IdealScene> MakeScene(Random& random, const PreparedModel& model,
-                                             const Pose& T, const IdealOptions& options = {}) {
+inline std::unique_ptr<IdealScene> MakeScene(Random& random, const PreparedModel& model, const Pose& T,
+                                             const IdealOptions& options = {}) {
   IdealSceneMaker maker(random, options);
   maker.AddObject(model, T);
   return maker.Finish();

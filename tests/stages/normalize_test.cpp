@@ -17,13 +17,10 @@ std::unique_ptr<NormalizedPlane> Normalize(const GrayImage& image) {
   return out;
 }
 
-int At(const NormalizedPlane& plane, int x, int y) {
-  return plane[static_cast<std::size_t>(y * kMaxImageWidth + x)];
-}
+int At(const NormalizedPlane& plane, int x, int y) { return plane[static_cast<std::size_t>(y * kMaxImageWidth + x)]; }
 
 GrayImage Textured(double gain, double offset, double scale = 6) {
-  return Paint(160, 120,
-               [=](int x, int y) { return offset + gain * 90 * testing::Texture(x, y, scale, 5); });
+  return Paint(160, 120, [=](int x, int y) { return offset + gain * 90 * testing::Texture(x, y, scale, 5); });
 }
 
 // 128 + 48 (I - mean) / (deviation + 4) over 15 x 15 pixels, borders repeated.
@@ -31,8 +28,7 @@ double ByFormula(const GrayImage& image, int x, int y) {
   double sum = 0, square = 0;
   for (int dy = -7; dy <= 7; ++dy) {
     for (int dx = -7; dx <= 7; ++dx) {
-      const double v = image.view()(std::clamp(x + dx, 0, image.width - 1),
-                                    std::clamp(y + dy, 0, image.height - 1));
+      const double v = image.view()(std::clamp(x + dx, 0, image.width - 1), std::clamp(y + dy, 0, image.height - 1));
       sum += v;
       square += v * v;
     }
@@ -76,8 +72,7 @@ TEST(Normalization, GainCancels) {
 
 TEST(Normalization, FlatAreasStayFlat) {
   testing::Random random(2);
-  const auto noisy =
-      Normalize(Paint(160, 120, [&](int, int) { return 100 + 0.7 * testing::Gaussian(random); }));
+  const auto noisy = Normalize(Paint(160, 120, [&](int, int) { return 100 + 0.7 * testing::Gaussian(random); }));
   double sum = 0;
   for (int y = 0; y < 120; ++y) {
     for (int x = 0; x < 160; ++x) sum += std::abs(At(*noisy, x, y) - 128);

@@ -23,8 +23,8 @@ Hypothesis HypothesisOf(const Pose& T, float score = 1) {
 Pose PoseOf(const CorrespondingSet& set) { return {set.R.cast<double>(), set.t.cast<double>()}; }
 
 bool Same(const PreparedModel& model, const Pose& p, const Pose& q, double tolerance) {
-  return IsSamePose(model, p.R.cast<float>(), p.t.cast<float>(), q.R.cast<float>(),
-                    q.t.cast<float>(), static_cast<float>(tolerance));
+  return IsSamePose(model, p.R.cast<float>(), p.t.cast<float>(), q.R.cast<float>(), q.t.cast<float>(),
+                    static_cast<float>(tolerance));
 }
 
 TEST(SamePose, AgreesWithCornersModuloSymmetry) {
@@ -34,10 +34,9 @@ TEST(SamePose, AgreesWithCornersModuloSymmetry) {
     int same = 0;
     for (int k = 0; k < Cases(2000); ++k) {
       const Pose p = testing::AnyView(random, *model, testing::TestCamera(), 300);
-      const Pose& symmetry = model->symmetries[static_cast<std::size_t>(
-          random.Below(static_cast<int>(model->symmetries.size())))];
-      const Pose q =
-          testing::Shaken(random, p * symmetry, random.Uniform(0, 0.1), random.Uniform(0, 0.02));
+      const Pose& symmetry =
+          model->symmetries[static_cast<std::size_t>(random.Below(static_cast<int>(model->symmetries.size())))];
+      const Pose q = testing::Shaken(random, p * symmetry, random.Uniform(0, 0.1), random.Uniform(0, 0.02));
       const double error = testing::CornerError(*model, p, q);
       if (std::abs(error - 0.02) < 1e-5) continue;
       ASSERT_EQ(Same(*model, p, q, 0.02), error < 0.02) << error;
@@ -75,8 +74,7 @@ TEST(Promotion, AlignsToAllLines) {
       if (sets->empty()) continue;
       ++promoted;
       const CorrespondingSet& set = sets->front();
-      const double error_before =
-          testing::CornerError(*model, {h.R.cast<double>(), h.t.cast<double>()}, T);
+      const double error_before = testing::CornerError(*model, {h.R.cast<double>(), h.t.cast<double>()}, T);
       const double error_after = testing::CornerError(*model, PoseOf(set), T);
       before += error_before;
       after += error_after;
@@ -88,9 +86,8 @@ TEST(Promotion, AlignsToAllLines) {
         true_members += scene->edge_of_line[member.line] == member.edge ? 1 : 0;
       }
     }
-    printf("%s: %d promoted, %d closer, mean error %.2f -> %.2f mm, %d of %d members right\n", name,
-           promoted, closer, 1e3 * before / promoted, 1e3 * after / promoted, true_members,
-           members);
+    printf("%s: %d promoted, %d closer, mean error %.2f -> %.2f mm, %d of %d members right\n", name, promoted, closer,
+           1e3 * before / promoted, 1e3 * after / promoted, true_members, members);
     EXPECT_GE(promoted, 0.9 * Cases(40));
     EXPECT_GE(closer, 0.85 * promoted);
     EXPECT_LT(after, 0.5 * before);
@@ -113,25 +110,22 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
     const PoseScorer scorer(params, edges, *model);
     std::vector<Hypothesis> hypotheses;
     for (int i = 0; i < 10; ++i)
-      hypotheses.push_back(
-          HypothesisOf(testing::Shaken(random, T, 0.3, 0.05), static_cast<float>(30 - i)));
+      hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.3, 0.05), static_cast<float>(30 - i)));
     hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 5));
     hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 4));
     PromoteSets({}, scorer, scene->camera, *model, scene->lines, hypotheses, *sets);
     ASSERT_FALSE(sets->empty());
-    const double tolerance =
-        static_cast<double>(PromotionParams{}.duplicate_share * model->view.diameter_m);
+    const double tolerance = static_cast<double>(PromotionParams{}.duplicate_share * model->view.diameter_m);
     for (std::size_t i = 0; i < sets->size(); ++i) {
       const CorrespondingSet& set = (*sets)[i];
       EXPECT_LE(set.rank, (*sets)[0].rank);
       EXPECT_LE(set.face_count, 3);
       EXPECT_LE(set.line_count, 9);
-      EXPECT_NEAR(set.rank,
-                  set.score + PromotionParams{}.line_gain * set.line_count +
-                      PromotionParams{}.face_gain * set.face_count,
-                  1e-3F);
-      for (std::size_t j = 0; j < i; ++j)
-        EXPECT_FALSE(Same(*model, PoseOf(set), PoseOf((*sets)[j]), tolerance));
+      EXPECT_NEAR(
+          set.rank,
+          set.score + PromotionParams{}.line_gain * set.line_count + PromotionParams{}.face_gain * set.face_count,
+          1e-3F);
+      for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(Same(*model, PoseOf(set), PoseOf((*sets)[j]), tolerance));
     }
     if (testing::CornerError(*model, PoseOf(sets->front()), T) < 0.02) ++first;
   }
@@ -141,8 +135,7 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
 TEST(Promotion, NoHypothesesNoSets) {
   Random random(4);
   const TestModel model = testing::Load("parcel_box");
-  const auto scene = testing::MakeScene(
-      random, *model, testing::AnyView(random, *model, testing::TestCamera(), 300));
+  const auto scene = testing::MakeScene(random, *model, testing::AnyView(random, *model, testing::TestCamera(), 300));
   const SceneEdges edges{scene->camera, scene->left, scene->right};
   const PoseScoreParams params;
   const PoseScorer scorer(params, edges, *model);

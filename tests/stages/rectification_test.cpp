@@ -30,8 +30,7 @@ StereoCalibration AnyRig(Random& random) {
   c.left = AnyEye(random);
   c.right = AnyEye(random);
   c.T_right_left.R = ExpSo3(random.Uniform(0, 9) * M_PI / 180 * testing::AnyDirection(random));
-  c.T_right_left.t = random.Uniform(0.04, 0.2) *
-                     Vector3d(-1, random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.1));
+  c.T_right_left.t = random.Uniform(0.04, 0.2) * Vector3d(-1, random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.1));
   return c;
 }
 
@@ -46,9 +45,7 @@ cv::Mat ToCv(const Matrix3d& m) {
 cv::Mat CameraMatrix(const CameraIntrinsics& c) {
   return (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
 }
-cv::Mat Distortion(const CameraIntrinsics& c) {
-  return (cv::Mat_<double>(1, 5) << c.k1, c.k2, c.p1, c.p2, c.k3);
-}
+cv::Mat Distortion(const CameraIntrinsics& c) { return (cv::Mat_<double>(1, 5) << c.k1, c.k2, c.p1, c.p2, c.k3); }
 cv::Mat RectifiedMatrix(const RectifiedCamera& c) {
   return (cv::Mat_<double>(3, 3) << c.f, 0, c.cx, 0, c.f, c.cy, 0, 0, 1);
 }
@@ -61,15 +58,14 @@ struct Eye {
 };
 
 std::array<Eye, 2> Eyes(const StereoCalibration& c, const Rectification& r) {
-  return {{{c.left, r.left, r.T_rectified_raw.R},
-           {c.right, r.right, r.T_rectified_raw.R * c.T_right_left.R.transpose()}}};
+  return {
+      {{c.left, r.left, r.T_rectified_raw.R}, {c.right, r.right, r.T_rectified_raw.R * c.T_right_left.R.transpose()}}};
 }
 
 // Where OpenCV finds each rectified pixel in the raw image.
 void OpenCvMap(const Eye& eye, const RectifiedCamera& camera, cv::Mat& x, cv::Mat& y) {
-  cv::initUndistortRectifyMap(CameraMatrix(eye.raw), Distortion(eye.raw), ToCv(eye.R),
-                              RectifiedMatrix(camera), {camera.width, camera.height}, CV_32FC1, x,
-                              y);
+  cv::initUndistortRectifyMap(CameraMatrix(eye.raw), Distortion(eye.raw), ToCv(eye.R), RectifiedMatrix(camera),
+                              {camera.width, camera.height}, CV_32FC1, x, y);
 }
 
 // The map as its header defines it: nodes, linear between them.
@@ -99,8 +95,7 @@ TEST(Rectification, MapAgreesWithOpenCv) {
       for (int v = 0; v < rig.height; ++v) {
         for (int u = 0; u < rig.width; ++u) {
           const Eigen::Vector2d expected(x.at<float>(v, u), y.at<float>(v, u));
-          if (expected.x() < 0 || expected.y() < 0 || expected.x() > 639 || expected.y() > 479)
-            continue;
+          if (expected.x() < 0 || expected.y() < 0 || expected.x() > 639 || expected.y() > 479) continue;
           const double error = (MapAt(eye.map, u, v) - expected).norm();
           (u % 8 == 0 && v % 8 == 0 ? at_nodes : between) =
               std::max(u % 8 == 0 && v % 8 == 0 ? at_nodes : between, error);
@@ -134,18 +129,14 @@ TEST(Rectification, RowsAlignAndDisparityGivesDepth) {
         std::vector<cv::Point2d> raw, ideal;
         cv::projectPoints(std::vector<cv::Point3d>{{q.x(), q.y(), q.z()}}, cv::Vec3d(), cv::Vec3d(),
                           CameraMatrix(eyes[e].raw), Distortion(eyes[e].raw), raw);
-        cv::undistortPoints(
-            raw, ideal, CameraMatrix(eyes[e].raw), Distortion(eyes[e].raw), ToCv(eyes[e].R),
-            RectifiedMatrix(camera),
-            cv::TermCriteria(cv::TermCriteria::MAX_ITER | cv::TermCriteria::EPS, 100, 1e-10));
+        cv::undistortPoints(raw, ideal, CameraMatrix(eyes[e].raw), Distortion(eyes[e].raw), ToCv(eyes[e].R),
+                            RectifiedMatrix(camera),
+                            cv::TermCriteria(cv::TermCriteria::MAX_ITER | cv::TermCriteria::EPS, 100, 1e-10));
         rectified[e] = ideal[0];
         inside = inside && raw[0].x >= 0 && raw[0].y >= 0 && raw[0].x <= 639 && raw[0].y <= 479;
         if (inside && ideal[0].x >= 0 && ideal[0].x < 639 && ideal[0].y >= 0 && ideal[0].y < 479) {
           // The raw pixel that our map gives for the rectified point is where OpenCV saw it.
-          EXPECT_LT(
-              (MapAt(eyes[e].map, ideal[0].x, ideal[0].y) - Eigen::Vector2d(raw[0].x, raw[0].y))
-                  .norm(),
-              0.02);
+          EXPECT_LT((MapAt(eyes[e].map, ideal[0].x, ideal[0].y) - Eigen::Vector2d(raw[0].x, raw[0].y)).norm(), 0.02);
         }
       }
       if (!inside) continue;
@@ -166,8 +157,8 @@ TEST(Rectification, DistortionIsBrownConrady) {
     const CameraIntrinsics eye = AnyEye(random);
     const double x = random.Uniform(-0.7, 0.7), y = random.Uniform(-0.6, 0.6);
     std::vector<cv::Point2d> q;
-    cv::projectPoints(std::vector<cv::Point3d>{{x, y, 1}}, cv::Vec3d(), cv::Vec3d(),
-                      CameraMatrix(eye), Distortion(eye), q);
+    cv::projectPoints(std::vector<cv::Point3d>{{x, y, 1}}, cv::Vec3d(), cv::Vec3d(), CameraMatrix(eye), Distortion(eye),
+                      q);
     EXPECT_LT((DistortAndProject(eye, x, y) - Eigen::Vector2d(q[0].x, q[0].y)).norm(), 1e-9);
   }
 }
@@ -213,21 +204,19 @@ TEST(Rectification, ImageAgreesWithRemap) {
   for (int k = 0; k < Cases(10); ++k) {
     const StereoCalibration rig = AnyRig(random);
     ASSERT_TRUE(ComputeRectification(rig, *rectification));
-    const auto raw = testing::Paint(
-        640, 480, [&](int x, int y) { return 128 + 120 * testing::Texture(x, y, 25, 7); });
+    const auto raw = testing::Paint(640, 480, [&](int x, int y) { return 128 + 120 * testing::Texture(x, y, 25, 7); });
     for (const Eye& eye : Eyes(rig, *rectification)) {
       testing::GrayImage ours{640, 480, std::vector<std::uint8_t>(640 * 480, 99)};
       RectifyImage(raw.view(), eye.map, ours.mutable_view());
       cv::Mat x, y, expected;
       OpenCvMap(eye, rectification->camera, x, y);
-      cv::remap(cv::Mat(480, 640, CV_8U, const_cast<std::uint8_t*>(raw.pixels.data())), expected, x,
-                y, cv::INTER_LINEAR);
+      cv::remap(cv::Mat(480, 640, CV_8U, const_cast<std::uint8_t*>(raw.pixels.data())), expected, x, y,
+                cv::INTER_LINEAR);
       int worst = 0;
       for (int v = 0; v < 480; ++v) {
         const auto [begin, end] = eye.map.valid[static_cast<std::size_t>(v)];
         const std::uint8_t* row = ours.pixels.data() + v * 640;
-        for (int u = begin; u < end; ++u)
-          worst = std::max(worst, std::abs(row[u] - expected.at<std::uint8_t>(v, u)));
+        for (int u = begin; u < end; ++u) worst = std::max(worst, std::abs(row[u] - expected.at<std::uint8_t>(v, u)));
         // What the raw image does not show repeats the nearest pixel that it does, or is black.
         for (int u = 0; u < 640; ++u) {
           const int expected_level = begin == end ? 0 : row[std::clamp(u, int{begin}, end - 1)];
@@ -262,8 +251,7 @@ TEST(Rectification, RefusesBadCalibrations) {
   const StereoCalibration good = AnyRig(random);
   const auto r = std::make_unique<Rectification>();
   ASSERT_TRUE(ComputeRectification(good, *r));
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
-                   kInf = std::numeric_limits<double>::infinity();
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
   const auto refused = [&](const char* what, const std::function<void(StereoCalibration&)>& spoil) {
     StereoCalibration bad = good;
     spoil(bad);
@@ -282,14 +270,10 @@ TEST(Rectification, RefusesBadCalibrations) {
   refused("no baseline", [](StereoCalibration& c) { c.T_right_left.t.setZero(); });
   refused("eyes exchanged", [](StereoCalibration& c) { c.T_right_left.t.x() *= -1; });
   refused("one eye above the other", [](StereoCalibration& c) { c.T_right_left.t = {0, -0.1, 0}; });
-  refused("one eye behind the other", [](StereoCalibration& c) {
-    c.T_right_left.t = {0, 0, -0.1};
-  });
+  refused("one eye behind the other", [](StereoCalibration& c) { c.T_right_left.t = {0, 0, -0.1}; });
   refused("mirrored", [](StereoCalibration& c) { c.T_right_left.R.col(0) *= -1; });
   refused("scaled", [](StereoCalibration& c) { c.T_right_left.R *= 1.01; });
-  refused("70 degrees apart", [](StereoCalibration& c) {
-    c.T_right_left.R = ExpSo3({0, 70 * M_PI / 180, 0});
-  });
+  refused("70 degrees apart", [](StereoCalibration& c) { c.T_right_left.R = ExpSo3({0, 70 * M_PI / 180, 0}); });
 }
 
 }  // namespace

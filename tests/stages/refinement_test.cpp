@@ -42,9 +42,8 @@ TEST(Refinement, ConvergesToTheTruth) {
   const int views = std::max(1, Cases(3)), starts = Cases(20);
   for (int v = 0; v < views; ++v) {
     const Pose T = testing::GoodView(random, *model);
-    const RenderedScene scene =
-        testing::Render(model->view, T, sim::Texture::kPlain, 10 + static_cast<std::uint64_t>(v),
-                        testing::SmallCamera());
+    const RenderedScene scene = testing::Render(model->view, T, sim::Texture::kPlain,
+                                                10 + static_cast<std::uint64_t>(v), testing::SmallCamera());
     for (int k = 0; k < starts; ++k) {
       RefinedPose close, wide;
       RefinePose({}, {scene.camera, scene.left->smooth, scene.right->smooth}, *model,
@@ -59,8 +58,7 @@ TEST(Refinement, ConvergesToTheTruth) {
       nees += twist.dot(close.covariance.ldlt().solve(twist));
       RefinePose({}, {scene.camera, scene.left->smooth, scene.right->smooth}, *model,
                  testing::Shaken(random, T, 0.052, 0.01), *scratch, wide);
-      far += wide.ok && testing::PixelError(scene.camera, *model, wide.T_camera_model, T) < 0.5 ? 1
-                                                                                                : 0;
+      far += wide.ok && testing::PixelError(scene.camera, *model, wide.T_camera_model, T) < 0.5 ? 1 : 0;
     }
   }
   printf(
@@ -78,8 +76,7 @@ TEST(Refinement, TruthIsAFixedPoint) {
   const TestModel model = testing::Load("parcel_box");
   const auto scratch = std::make_unique<RefineScratch>();
   const Pose T = testing::GoodView(random, *model);
-  const RenderedScene scene =
-      testing::Render(model->view, T, sim::Texture::kPlain, 3, testing::SmallCamera());
+  const RenderedScene scene = testing::Render(model->view, T, sim::Texture::kPlain, 3, testing::SmallCamera());
   RefinedPose out;
   RefinePose({}, {scene.camera, scene.left->smooth, scene.right->smooth}, *model, T, *scratch, out);
   ASSERT_TRUE(out.ok);
@@ -95,14 +92,13 @@ TEST(Refinement, CorrectsEveryDegreeOfFreedom) {
   const TestModel model = testing::Load("parcel_box");
   const auto scratch = std::make_unique<RefineScratch>();
   const Pose T = testing::GoodView(random, *model);
-  const RenderedScene scene =
-      testing::Render(model->view, T, sim::Texture::kPlain, 4, testing::SmallCamera());
+  const RenderedScene scene = testing::Render(model->view, T, sim::Texture::kPlain, 4, testing::SmallCamera());
   for (int i = 0; i < 6; ++i) {
     for (const double sign : {1.0, -1.0}) {
       const Vector6d twist = sign * (i < 3 ? 0.03 : 0.008) * Vector6d::Unit(i);
       RefinedPose out;
-      RefinePose({}, {scene.camera, scene.left->smooth, scene.right->smooth}, *model,
-                 PerturbLeft(T, twist, T.t), *scratch, out);
+      RefinePose({}, {scene.camera, scene.left->smooth, scene.right->smooth}, *model, PerturbLeft(T, twist, T.t),
+                 *scratch, out);
       ASSERT_TRUE(out.ok) << i;
       const Vector6d left = TwistBetween(out.T_camera_model, T);
       EXPECT_LT(std::abs(left(i)), 0.35 * std::abs(twist(i))) << i;
@@ -124,20 +120,16 @@ TEST(Refinement, DegenerateInputsAreNotOk) {
     return !out.ok;
   };
   EXPECT_TRUE(refused(*flat, T));
-  const auto noise =
-      testing::FindAll(testing::Paint(320, 240, [&](int, int) { return random.Uniform(0, 255); }));
+  const auto noise = testing::FindAll(testing::Paint(320, 240, [&](int, int) { return random.Uniform(0, 255); }));
   EXPECT_TRUE(refused(noise->smooth, {T.R, {0, 0, -1}}));    // behind the camera
   EXPECT_TRUE(refused(noise->smooth, {T.R, {50, 0, 1}}));    // far outside of the image
   EXPECT_TRUE(refused(noise->smooth, {T.R, {0, 0, 1000}}));  // a dot
   // One straight edge fixes two degrees of freedom, not six. Damping may still give a pose; never
   // numbers that are none.
-  const auto edge =
-      testing::FindAll(testing::Paint(320, 240, [](int x, int) { return x < 160 ? 60 : 160; }));
+  const auto edge = testing::FindAll(testing::Paint(320, 240, [](int x, int) { return x < 160 ? 60 : 160; }));
   for (int k = 0; k < Cases(50); ++k) {
-    RefinePose({}, {camera, edge->smooth, edge->smooth}, *model,
-               testing::Shaken(random, T, 0.3, 0.1), *scratch, out);
-    EXPECT_TRUE(out.T_camera_model.R.allFinite() && out.T_camera_model.t.allFinite() &&
-                out.covariance.allFinite());
+    RefinePose({}, {camera, edge->smooth, edge->smooth}, *model, testing::Shaken(random, T, 0.3, 0.1), *scratch, out);
+    EXPECT_TRUE(out.T_camera_model.R.allFinite() && out.T_camera_model.t.allFinite() && out.covariance.allFinite());
   }
 }
 

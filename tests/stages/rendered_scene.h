@@ -17,18 +17,15 @@ struct RenderedScene {
 // The mesh of a model, so that what is rendered is what is searched for.
 inline sim::Mesh MeshOf(const ModelView& model) {
   sim::Mesh mesh;
-  for (std::size_t i = 0; i < model.vertices.size(); ++i)
-    mesh.vertices.push_back(model.VertexPosition(i));
-  for (const ModelTriangle& t : model.triangles)
-    mesh.triangles.push_back({t.vertex[0], t.vertex[1], t.vertex[2]});
+  for (std::size_t i = 0; i < model.vertices.size(); ++i) mesh.vertices.push_back(model.VertexPosition(i));
+  for (const ModelTriangle& t : model.triangles) mesh.triangles.push_back({t.vertex[0], t.vertex[1], t.vertex[2]});
   return mesh;
 }
 
 // The object in front of a speckled wall 0.5 m behind it, under one lamp. `texture` of the object;
 // 320 x 240 pixels, since rendering is what takes time. The left camera is the origin.
-inline RenderedScene Render(const ModelView& model, const Pose& T_camera_model,
-                            sim::Texture texture, std::uint64_t seed,
-                            const RectifiedCamera& camera) {
+inline RenderedScene Render(const ModelView& model, const Pose& T_camera_model, sim::Texture texture,
+                            std::uint64_t seed, const RectifiedCamera& camera) {
   sim::Scene scene;
   scene.meshes = {MeshOf(model), sim::MakeBox({4, 4, 0.01F})};
   sim::Instance object, wall;
@@ -53,8 +50,7 @@ inline RenderedScene Render(const ModelView& model, const Pose& T_camera_model,
     eye.width = camera.width;
     eye.height = camera.height;
     eye.T_world_camera.t = {x, 0, 0};
-    const sim::RadianceImage light =
-        renderer.Render(eye, {.samples_per_side = 3, .threads = 1, .seed = seed + noise});
+    const sim::RadianceImage light = renderer.Render(eye, {.samples_per_side = 3, .threads = 1, .seed = seed + noise});
     return FindAll(sim::Expose(light, 1.2F * sim::AutoExposure(light, 0.7F), {}, noise));
   };
   return {camera, shoot(0, 1), shoot(camera.baseline, 2)};
@@ -69,11 +65,9 @@ inline RectifiedCamera SmallCamera() {
 // The box with three faces in view, 0.7 m away, and a little different each time.
 inline Pose GoodView(Random& random, const PreparedModel& model, double z = 0.75) {
   Pose T;
-  T.R = ExpSo3({0.08 * Gaussian(random), 0.08 * Gaussian(random), 0.08 * Gaussian(random)}) *
-        ExpSo3({0.5, 0, 0}) * ExpSo3({0, 0.6, 0}) *
-        (Matrix3d() << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished();
-  T.t = Vector3d(0.02 * Gaussian(random), 0.02 * Gaussian(random), z) -
-        T.R * model.centre.cast<double>();
+  T.R = ExpSo3({0.08 * Gaussian(random), 0.08 * Gaussian(random), 0.08 * Gaussian(random)}) * ExpSo3({0.5, 0, 0}) *
+        ExpSo3({0, 0.6, 0}) * (Matrix3d() << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished();
+  T.t = Vector3d(0.02 * Gaussian(random), 0.02 * Gaussian(random), z) - T.R * model.centre.cast<double>();
   return T;
 }
 
@@ -85,13 +79,12 @@ inline Pose Shaken(Random& random, const Pose& T, double angle_rad, double dista
 }
 
 // Greatest distance in the left image of a box corner's projection from where it should be, px.
-inline double PixelError(const RectifiedCamera& camera, const PreparedModel& model,
-                         const Pose& estimate, const Pose& truth) {
+inline double PixelError(const RectifiedCamera& camera, const PreparedModel& model, const Pose& estimate,
+                         const Pose& truth) {
   double worst = 0;
   for (const Vector3& corner : model.corners) {
     const Vector3d c = corner.cast<double>();
-    worst = std::max(worst,
-                     (camera.Project(estimate * c) - camera.Project(truth * c)).head<2>().norm());
+    worst = std::max(worst, (camera.Project(estimate * c) - camera.Project(truth * c)).head<2>().norm());
   }
   return worst;
 }

@@ -25,8 +25,7 @@ struct Bar {
   [[nodiscard]] double Coverage(double x, double y) const {
     const Eigen::Vector2d p = Eigen::Vector2d(x, y) - centre;
     const double u = p.dot(along), v = p.dot(across());
-    return (Step(u + length / 2) - Step(u - length / 2)) *
-           (Step(v + width / 2) - Step(v - width / 2));
+    return (Step(u + length / 2) - Step(u - length / 2)) * (Step(v + width / 2) - Step(v - width / 2));
   }
 };
 
@@ -62,8 +61,7 @@ void Judge(const Bar& bar, int side, const Segments& segments, Statistics& out) 
     // The brighter side: into the bar where it is bright.
     const Eigen::Vector2d inwards = -side * bar.across();
     EXPECT_GT(s.Normal().cast<double>().dot(inwards) * bar.contrast, 0);
-    const double offset = (m - middle).dot(inwards),
-                 angle = std::asin(sine * (d.dot(bar.along) > 0 ? 1 : -1));
+    const double offset = (m - middle).dot(inwards), angle = std::asin(sine * (d.dot(bar.along) > 0 ? 1 : -1));
     out.offset_sum += offset;
     out.offset_square += offset * offset;
     out.offset_normalized += std::pow(offset / static_cast<double>(s.sigma_offset_px), 2);
@@ -114,8 +112,7 @@ void Expect(const Statistics& s, double max_offset_rms, double max_angle_rms) {
       "found %d of %d, offset rms %.3f px (%.2f sigma), angle rms %.5f rad (%.2f sigma), ends %.2f "
       "within 2 px, worst %.2f px\n",
       s.found, s.looked_for, std::sqrt(s.offset_square / n), std::sqrt(s.offset_normalized / n),
-      std::sqrt(s.angle_square / n), std::sqrt(s.angle_normalized / n),
-      0.5 * s.ends_within_two_px / n, s.worst_end);
+      std::sqrt(s.angle_square / n), std::sqrt(s.angle_normalized / n), 0.5 * s.ends_within_two_px / n, s.worst_end);
 }
 
 TEST(SegmentFinding, CleanEdges) {
@@ -162,11 +159,8 @@ TEST(SegmentFinding, ExtremeImages) {
       {"checker of 4 px", [&](int x, int y) { return tile(x, y, 4); }, 0, kMaxSegments},
       {"grating", [](int x, int) { return x % 8 < 4 ? 0 : 255; }, 100, kMaxSegments},
       {"flat grating", [](int, int y) { return y % 8 < 4 ? 0 : 255; }, 80, kMaxSegments},
-      {"slanted grating", [](int x, int y) { return 127 + 127 * std::sin(0.5 * x + 0.3 * y); }, 50,
-       kMaxSegments},
-      {"rings",
-       [](int x, int y) { return 127 + 127 * std::sin(0.3 * std::hypot(x - 320, y - 240)); }, 0,
-       kMaxSegments},
+      {"slanted grating", [](int x, int y) { return 127 + 127 * std::sin(0.5 * x + 0.3 * y); }, 50, kMaxSegments},
+      {"rings", [](int x, int y) { return 127 + 127 * std::sin(0.3 * std::hypot(x - 320, y - 240)); }, 0, kMaxSegments},
   };
   for (const Case& c : cases) {
     const GrayImage image = Paint(640, 480, c.level);
@@ -180,8 +174,7 @@ TEST(SegmentFinding, ExtremeImages) {
 
 // 1040 sides of tiles: the longest 512 are kept, the others counted.
 TEST(SegmentFinding, OverflowIsCounted) {
-  const GrayImage image =
-      Paint(640, 480, [](int x, int y) { return (x / 24 + y / 24) % 2 == 0 ? 40 : 200; });
+  const GrayImage image = Paint(640, 480, [](int x, int y) { return (x / 24 + y / 24) % 2 == 0 ? 40 : 200; });
   const auto planes = FindAll(image);
   EXPECT_GT(planes->segments.dropped, 100U);
   EXPECT_GT(planes->segments.items.size(), 400U);
@@ -197,25 +190,21 @@ TEST(SegmentFinding, JoinsAcrossGapsButNotAcrossPolarity) {
     return count;
   };
   const auto edge = [](int y) { return Step(y - 50.3); };
-  EXPECT_EQ(count_long([&](int x, int y) { return x > 140 && x < 160 ? 100 : 100 + 60 * edge(y); }),
-            1);
-  EXPECT_EQ(
-      count_long([&](int x, int y) { return x < 150 ? 100 + 60 * edge(y) : 160 - 60 * edge(y); }),
-      0);
+  EXPECT_EQ(count_long([&](int x, int y) { return x > 140 && x < 160 ? 100 : 100 + 60 * edge(y); }), 1);
+  EXPECT_EQ(count_long([&](int x, int y) { return x < 150 ? 100 + 60 * edge(y) : 160 - 60 * edge(y); }), 0);
 }
 
 // A circle of radius 40 is no line: only chords that stay within a pixel of the arc.
 TEST(SegmentFinding, CurvesGiveShortChords) {
-  const auto planes = FindAll(Paint(
-      200, 200, [](int x, int y) { return 60 + 100 * Step(40 - std::hypot(x - 100, y - 100)); }));
+  const auto planes =
+      FindAll(Paint(200, 200, [](int x, int y) { return 60 + 100 * Step(40 - std::hypot(x - 100, y - 100)); }));
   for (const Segment2& s : planes->segments.items) EXPECT_LT(s.Length(), 45);
 }
 
 TEST(SegmentFinding, SameImageSameBytes) {
   Random random(8);
-  const GrayImage image = Paint(320, 240, [&](int x, int y) {
-    return 128 + 80 * testing::Texture(x, y, 17, 3) + 3 * testing::Gaussian(random);
-  });
+  const GrayImage image = Paint(
+      320, 240, [&](int x, int y) { return 128 + 80 * testing::Texture(x, y, 17, 3) + 3 * testing::Gaussian(random); });
   const auto first = FindAll(image), second = FindAll(image);
   ASSERT_EQ(first->segments.items.size(), second->segments.items.size());
   for (std::size_t i = 0; i < first->segments.items.size(); ++i) {

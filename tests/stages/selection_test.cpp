@@ -35,13 +35,12 @@ class SelectionTest : public ::testing::Test {
     return c;
   }
 
-  std::vector<int> Select(const std::vector<Candidate>& candidates,
-                          const SelectParams& params = {}) {
+  std::vector<int> Select(const std::vector<Candidate>& candidates, const SelectParams& params = {}) {
     const auto scratch = std::make_unique<VerifyScratch>();
     const auto claims = std::make_unique<ClaimMap>();
     FixedVector<std::uint16_t, kMaxDetections> accepted;
-    SelectDetections(params, testing::TestCamera(), *map_, {models_->begin(), models_->end()},
-                     candidates, *scratch, *claims, accepted, dropped_);
+    SelectDetections(params, testing::TestCamera(), *map_, {models_->begin(), models_->end()}, candidates, *scratch,
+                     *claims, accepted, dropped_);
     return {accepted.begin(), accepted.end()};
   }
 
@@ -52,8 +51,7 @@ class SelectionTest : public ::testing::Test {
 };
 
 TEST_F(SelectionTest, BestFirstAndNoneBelowTheLimit) {
-  EXPECT_EQ(Select({At(0, -0.5, 0, 2, 0.9F), At(1, 0.5, 0, 2, 0.7F), At(0, 0, 0.5, 2, 0.49F)}),
-            (std::vector{0, 1}));
+  EXPECT_EQ(Select({At(0, -0.5, 0, 2, 0.9F), At(1, 0.5, 0, 2, 0.7F), At(0, 0, 0.5, 2, 0.49F)}), (std::vector{0, 1}));
   EXPECT_EQ(Select({}), std::vector<int>{});
   EXPECT_EQ(Select({At(0, 0, 0, 2, 0.2F)}), std::vector<int>{});
 }
@@ -62,8 +60,7 @@ TEST_F(SelectionTest, BestFirstAndNoneBelowTheLimit) {
 TEST_F(SelectionTest, DuplicatesMerge) {
   Candidate moved = At(0, 0.02, 0.01, 2, 0.8F), turned = At(0, 0, 0, 2, 0.7F);
   turned.pose.T_camera_model = turned.pose.T_camera_model * models_->front().symmetries[1];
-  EXPECT_EQ(Select({At(0, 0, 0, 2, 0.9F), moved, turned, At(0, 0.6, 0, 2, 0.6F)}),
-            (std::vector{0, 3}));
+  EXPECT_EQ(Select({At(0, 0, 0, 2, 0.9F), moved, turned, At(0, 0.6, 0, 2, 0.6F)}), (std::vector{0, 3}));
 }
 
 // Edges that explain one object cannot explain another one at the same place.
@@ -83,15 +80,13 @@ TEST_F(SelectionTest, UnsupportedEdgesClaimNothing) {
   map_->directions.fill(0);
   SelectParams strict;
   strict.max_claimed = 0;
-  EXPECT_EQ(Select({At(0, 0, 0, 1.2, 0.9F), At(1, 0.03, 0, 1.2, 0.8F)}, strict),
-            (std::vector{0, 1}));
+  EXPECT_EQ(Select({At(0, 0, 0, 1.2, 0.9F), At(1, 0.03, 0, 1.2, 0.8F)}, strict), (std::vector{0, 1}));
 }
 
 TEST_F(SelectionTest, OverflowKeepsTheBestAndCounts) {
   std::vector<Candidate> candidates;
   for (int i = 0; i < 20; ++i)
-    candidates.push_back(
-        At(1, -2.2 + 1.1 * (i % 5), -1.5 + i / 5 * 1.0, 5, 0.99F - 0.01F * static_cast<float>(i)));
+    candidates.push_back(At(1, -2.2 + 1.1 * (i % 5), -1.5 + i / 5 * 1.0, 5, 0.99F - 0.01F * static_cast<float>(i)));
   const std::vector<int> accepted = Select(candidates);
   ASSERT_EQ(accepted.size(), kMaxDetections);
   for (std::size_t i = 0; i < accepted.size(); ++i) EXPECT_EQ(accepted[i], static_cast<int>(i));

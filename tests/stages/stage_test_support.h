@@ -36,8 +36,7 @@ inline RectifiedCamera TestCamera(int width = 640, int height = 480) {
 // A rectification that leaves the image as it is; only its valid intervals matter to the stages.
 inline std::unique_ptr<RectificationMap> WholeImage(int width, int height) {
   auto map = std::make_unique<RectificationMap>();
-  for (int y = 0; y < height; ++y)
-    map->valid[static_cast<std::size_t>(y)] = {0, static_cast<std::int16_t>(width)};
+  for (int y = 0; y < height; ++y) map->valid[static_cast<std::size_t>(y)] = {0, static_cast<std::int16_t>(width)};
   return map;
 }
 
@@ -47,22 +46,17 @@ inline GrayImage Paint(int width, int height, const std::function<double(int, in
   image.pixels.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      image.pixels.push_back(
-          static_cast<std::uint8_t>(std::clamp(std::floor(level(x, y) + 0.5), 0.0, 255.0)));
+      image.pixels.push_back(static_cast<std::uint8_t>(std::clamp(std::floor(level(x, y) + 0.5), 0.0, 255.0)));
     }
   }
   return image;
 }
 
-inline double Gaussian(Random& random) {
-  return static_cast<double>(sim::NormalFloat(random.Next()));
-}
+inline double Gaussian(Random& random) { return static_cast<double>(sim::NormalFloat(random.Next())); }
 
 // Share of a pixel's light that comes from beyond an edge at signed distance `d_px`: a sharp edge
 // seen through a lens and pixel of standard deviation `sigma_px`.
-inline double Step(double d_px, double sigma_px = 0.6) {
-  return 0.5 * std::erfc(-d_px / (sigma_px * std::sqrt(2.0)));
-}
+inline double Step(double d_px, double sigma_px = 0.6) { return 0.5 * std::erfc(-d_px / (sigma_px * std::sqrt(2.0))); }
 
 // Smooth noise in -1..1 with details of about `scale`, anywhere in the plane: random lattice values
 // with cubic blends.

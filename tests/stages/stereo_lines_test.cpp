@@ -31,12 +31,10 @@ struct Pair {
 
 // The right eye is darker and noisy in its own way, as real ones are.
 Pair See(const Picture& left, const Picture& right, double noise, Random& random) {
-  return {
-      testing::FindAll(testing::Paint(
-          640, 240, [&](int x, int y) { return left(x, y) + noise * testing::Gaussian(random); })),
-      testing::FindAll(testing::Paint(640, 240, [&](int x, int y) {
-        return 10 + 0.8 * right(x, y) + noise * testing::Gaussian(random);
-      }))};
+  return {testing::FindAll(
+              testing::Paint(640, 240, [&](int x, int y) { return left(x, y) + noise * testing::Gaussian(random); })),
+          testing::FindAll(testing::Paint(
+              640, 240, [&](int x, int y) { return 10 + 0.8 * right(x, y) + noise * testing::Gaussian(random); }))};
 }
 
 RectifiedCamera Camera() { return testing::TestCamera(640, 240); }
@@ -46,8 +44,7 @@ std::unique_ptr<Lines3> Match(const Pair& pair) {
   const auto whole = testing::WholeImage(640, 240);
   const auto scratch = std::make_unique<StereoScratch>();
   auto lines = std::make_unique<Lines3>();
-  MatchLines({},
-             {camera, pair.left->normalized, pair.right->normalized, pair.right->smooth, *whole},
+  MatchLines({}, {camera, pair.left->normalized, pair.right->normalized, pair.right->smooth, *whole},
              pair.left->segments, *scratch, *lines);
   return lines;
 }
@@ -60,16 +57,14 @@ Picture Shapes(Random& random) {
   std::vector<Shape> shapes;
   for (int i = 0; i < 9; ++i) {
     const double angle = random.Uniform(0, M_PI);
-    shapes.push_back({100 + 60.0 * i, random.Uniform(80, 160), std::cos(angle), std::sin(angle),
-                      random.Uniform(50, 90), random.Uniform(16, 30),
-                      random.Uniform(30, 60) * (random.Chance(0.5) ? 1 : -1)});
+    shapes.push_back({100 + 60.0 * i, random.Uniform(80, 160), std::cos(angle), std::sin(angle), random.Uniform(50, 90),
+                      random.Uniform(16, 30), random.Uniform(30, 60) * (random.Chance(0.5) ? 1 : -1)});
   }
   const std::uint64_t seed = random.Next();
   return [shapes, seed](double x, double y) {
     double level = 120 + 14 * testing::Texture(x, y, 5, seed);
     for (const Shape& s : shapes) {
-      const double u = (x - s.x) * s.cosine + (y - s.y) * s.sine,
-                   v = -(x - s.x) * s.sine + (y - s.y) * s.cosine;
+      const double u = (x - s.x) * s.cosine + (y - s.y) * s.sine, v = -(x - s.x) * s.sine + (y - s.y) * s.cosine;
       level += s.contrast * (Step(u + s.length / 2) - Step(u - s.length / 2)) *
                (Step(v + s.width / 2) - Step(v - s.width / 2));
     }
@@ -90,12 +85,10 @@ void Judge(const Lines3& lines, const Plane& plane, bool flat, Outcome& out) {
     ++out.lines;
     if (!line.has_depth) continue;
     ++out.matched;
-    const double ea =
-        static_cast<double>(line.disparity_a_px) -
-        plane.At(static_cast<double>(line.segment.a.x()), static_cast<double>(line.segment.a.y()));
-    const double eb =
-        static_cast<double>(line.disparity_b_px) -
-        plane.At(static_cast<double>(line.segment.b.x()), static_cast<double>(line.segment.b.y()));
+    const double ea = static_cast<double>(line.disparity_a_px) -
+                      plane.At(static_cast<double>(line.segment.a.x()), static_cast<double>(line.segment.a.y()));
+    const double eb = static_cast<double>(line.disparity_b_px) -
+                      plane.At(static_cast<double>(line.segment.b.x()), static_cast<double>(line.segment.b.y()));
     if (std::max(std::abs(ea), std::abs(eb)) < 1.5) ++out.right;
     for (const auto& [error, variance] : {std::pair(ea, line.var_a), std::pair(eb, line.var_b)}) {
       ++out.ends;
@@ -106,17 +99,15 @@ void Judge(const Lines3& lines, const Plane& plane, bool flat, Outcome& out) {
 }
 
 void Print(const char* what, const Outcome& o) {
-  printf("%s: %d lines, %d matched, %d within 1.5 px; coverage %.2f at 1 sigma, %.2f at 2 sigma\n",
-         what, o.lines, o.matched, o.right, 1.0 * o.within_one / o.ends,
-         1.0 * o.within_two / o.ends);
+  printf("%s: %d lines, %d matched, %d within 1.5 px; coverage %.2f at 1 sigma, %.2f at 2 sigma\n", what, o.lines,
+         o.matched, o.right, 1.0 * o.within_one / o.ends, 1.0 * o.within_two / o.ends);
 }
 
 TEST(StereoMatching, DisparityOfTexturedPlanes) {
   Random random(1);
   Outcome steep, flat;
   for (int k = 0; k < Cases(20); ++k) {
-    const Plane plane{random.Uniform(-0.12, 0.12), random.Uniform(-0.12, 0.12),
-                      random.Uniform(45, 80)};
+    const Plane plane{random.Uniform(-0.12, 0.12), random.Uniform(-0.12, 0.12), random.Uniform(45, 80)};
     const Picture picture = Shapes(random);
     const Pair pair = See(
         picture, [&](double u, double v) { return picture(plane.LeftOf(u, v), v); }, 1.5, random);
@@ -167,8 +158,7 @@ TEST(StereoMatching, OccludingEdgeBelongsToTheNearSide) {
   Random random(3);
   int sides = 0, near = 0, owned_by_far = 0;
   for (int k = 0; k < 12; ++k) {
-    const double near_d = random.Uniform(40, 70), far_d = random.Uniform(10, 25),
-                 tilt = random.Uniform(-0.3, 0.3);
+    const double near_d = random.Uniform(40, 70), far_d = random.Uniform(10, 25), tilt = random.Uniform(-0.3, 0.3);
     const double contrast = random.Uniform(30, 60) * (random.Chance(0.5) ? 1 : -1);
     const std::uint64_t seed = random.Next();
     // In left coordinates; `shift` moves the bar and the wall by their disparities.
@@ -179,18 +169,15 @@ TEST(StereoMatching, OccludingEdgeBelongsToTheNearSide) {
       const double bar = 120 + contrast + 35 * testing::Texture(x + near_shift, y, 5, seed + 1);
       return inside * bar + (1 - inside) * wall;
     };
-    const Pair pair =
-        See([&](double x, double y) { return picture(x, y, 0, 0); },
-            [&](double x, double y) { return picture(x, y, near_d, far_d); }, 1, random);
+    const Pair pair = See([&](double x, double y) { return picture(x, y, 0, 0); },
+                          [&](double x, double y) { return picture(x, y, near_d, far_d); }, 1, random);
     const auto lines = Match(pair);
     for (const Line3& line : *lines) {
       const Vector2 m = line.segment.Middle();
       const double u = static_cast<double>(m.x()) - 300 - tilt * (static_cast<double>(m.y()) - 120);
       if (std::abs(std::abs(u) - 45) > 2 || line.segment.Length() < 60 || !line.has_depth) continue;
       ++sides;
-      if (std::abs(static_cast<double>(0.5F * (line.disparity_a_px + line.disparity_b_px)) -
-                   near_d) < 1)
-        ++near;
+      if (std::abs(static_cast<double>(0.5F * (line.disparity_a_px + line.disparity_b_px)) - near_d) < 1) ++near;
       if (line.owner == LineOwner::kBoth) continue;
       const bool bar_is_right = u < 0;
       const bool bright_is_right = line.segment.Normal().x() > 0;

@@ -49,7 +49,8 @@ TEST(SurfaceMap, AgreesWithRayCasting) {
           if (doubtful) continue;
           ++compared;
           const double expected = z > 0 ? camera.DisparityOfDepth(z) : 0;
-          ASSERT_NEAR(static_cast<double>(surface->At(i, j)), expected, 0.01 + 1e-4 * expected) << name << " " << i << " " << j;
+          ASSERT_NEAR(static_cast<double>(surface->At(i, j)), expected, 0.01 + 1e-4 * expected)
+              << name << " " << i << " " << j;
         }
       }
       EXPECT_GT(compared, 20);
@@ -62,7 +63,8 @@ TEST(SurfaceMap, OutsideOfTheImageIsEmpty) {
   const TestModel model = testing::Load("parcel_box");
   const auto surface = std::make_unique<SurfaceMap>();
   Random random(2);
-  for (const Vector3d& t : {Vector3d(5, 0, 1), Vector3d(-5, 0, 1), Vector3d(0, 5, 1), Vector3d(0, 0, -2), Vector3d(0, 0, 0)}) {
+  for (const Vector3d& t :
+       {Vector3d(5, 0, 1), Vector3d(-5, 0, 1), Vector3d(0, 5, 1), Vector3d(0, 0, -2), Vector3d(0, 0, 0)}) {
     RenderSurface(camera, *model, {testing::AnyRotation(random), t}, *surface);
     for (int j = surface->y0; j < surface->y1; ++j) {
       for (int i = surface->x0; i < surface->x1; ++i) EXPECT_EQ(surface->At(i, j), 0) << t.x() << " " << t.z();

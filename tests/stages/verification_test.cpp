@@ -17,12 +17,11 @@ class VerificationTest : public ::testing::Test {
  protected:
   Evidence Gather(const RenderedScene& scene, const Pose& T) {
     Evidence evidence;
-    ComputeDisparityMap({}, scene.camera.width, scene.camera.height, scene.left->normalized,
-                        scene.right->normalized, *disparity_scratch_, *disparity_);
+    ComputeDisparityMap({}, scene.camera.width, scene.camera.height, scene.left->normalized, scene.right->normalized,
+                        *disparity_scratch_, *disparity_);
     GatherEvidence({},
-                   {scene.camera, scene.left->map, scene.right->map, scene.left->normalized,
-                    scene.right->normalized, scene.left->smooth, scene.right->smooth,
-                    *disparity_},
+                   {scene.camera, scene.left->map, scene.right->map, scene.left->normalized, scene.right->normalized,
+                    scene.left->smooth, scene.right->smooth, *disparity_},
                    *model_, T, *scratch_, evidence);
     return evidence;
   }
@@ -49,8 +48,8 @@ TEST_F(VerificationTest, RightPoseBeatsShiftedOnes) {
   int beaten = 0;
   const int count = Cases(60);
   for (int k = 0; k < count; ++k) {
-    const Evidence wrong = Gather(
-        scene, testing::Shaken(random, T, random.Uniform(0.1, 0.5), random.Uniform(0.02, 0.08)));
+    const Evidence wrong =
+        Gather(scene, testing::Shaken(random, T, random.Uniform(0.1, 0.5), random.Uniform(0.02, 0.08)));
     EXPECT_LT(wrong.edges, right.edges);
     if (wrong.edges + wrong.faces < right.edges + right.faces) ++beaten;
   }
@@ -101,9 +100,8 @@ TEST_F(VerificationTest, ContrastWithTheSurroundings) {
   double sum = 0;
   const int count = Cases(50);
   for (int k = 0; k < count; ++k) {
-    sum += static_cast<double>(Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1),
-                                                             random.Uniform(0.03, 0.1)))
-                                   .contrast);
+    sum += static_cast<double>(
+        Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1), random.Uniform(0.03, 0.1))).contrast);
   }
   EXPECT_LT(sum / count, 0.2);
 }
@@ -118,7 +116,8 @@ TEST_F(VerificationTest, DistinctEdges) {
   int beaten = 0;
   const int count = Cases(50);
   for (int k = 0; k < count; ++k) {
-    const Evidence wrong = Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1), random.Uniform(0.03, 0.1)));
+    const Evidence wrong =
+        Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1), random.Uniform(0.03, 0.1)));
     EXPECT_TRUE(wrong.distinct >= 0 && wrong.distinct <= 1);
     if (wrong.distinct < right) ++beaten;
   }

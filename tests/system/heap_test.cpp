@@ -16,15 +16,17 @@ class HeapTest : public RobotTest {
   [[nodiscard]] Use Run(int frames) const {
     const std::string config = WriteConfig(
         "camera:\n  backend: replay\n  replay: { data_set: data, loop: true, preload: true }\n"
-        "dds: { domain: " + domain_ + ", loopback: true }\nmodels: [parcel_box.wpm]\n");
+        "dds: { domain: " +
+        domain_ + ", loopback: true }\nmodels: [parcel_box.wpm]\n");
     const std::string file = (folder_ / "use.txt").string();
-    Process robot(folder_, "robot", Robot(config, {"--frames", std::to_string(frames)}),
-                  {std::string("LD_PRELOAD=") + WIREPOSE_HEAP_COUNTER, "WIREPOSE_HEAP_COUNT=" + file,
-                   "WATCHDOG_USEC=100000"});
+    Process robot(
+        folder_, "robot", Robot(config, {"--frames", std::to_string(frames)}),
+        {std::string("LD_PRELOAD=") + WIREPOSE_HEAP_COUNTER, "WIREPOSE_HEAP_COUNT=" + file, "WATCHDOG_USEC=100000"});
     EXPECT_EQ(robot.Wait(std::chrono::seconds(250)), 0) << robot.Err();
     Use use;
     std::string word;
-    std::ifstream(file) >> word >> use.main >> word >> use.others >> word >> use.minor_faults >> word >> use.major_faults;
+    std::ifstream(file) >> word >> use.main >> word >> use.others >> word >> use.minor_faults >> word >>
+        use.major_faults;
     EXPECT_EQ(word, "major_faults") << "the counter was not loaded, or wireposed is built without libsystemd";
     return use;
   }
@@ -35,9 +37,10 @@ TEST_F(HeapTest, TenThousandFramesWithoutHeapOnTheThreadThatRecognizes) {
   const Use use = Run(10'000);
   EXPECT_EQ(use.main, 0);
   EXPECT_EQ(use.major_faults, 0);
-  std::printf("10,000 frames: %ld heap calls on the thread that captures and recognizes, %ld on the publisher's and DDS's, "
-              "%ld minor and %ld major page faults\n",
-              use.main, use.others, use.minor_faults, use.major_faults);
+  std::printf(
+      "10,000 frames: %ld heap calls on the thread that captures and recognizes, %ld on the publisher's and DDS's, "
+      "%ld minor and %ld major page faults\n",
+      use.main, use.others, use.minor_faults, use.major_faults);
 }
 
 }  // namespace

@@ -198,8 +198,7 @@ TEST_F(RefusalTest, Configuration) {
          {"robot.yaml:3", "camera.zoom", "unknown key"});
   Expect(Robot(WriteConfig("camera: { backend: replay }\nmodels: [.]\n")), 2,
          {"robot.yaml", "camera.replay.data_set", "missing"});
-  Expect(Robot(WriteConfig("camera: { backend: libcamera }\nmodels: [.]\n")), 2,
-         {"robot.yaml", "libcamera"});
+  Expect(Robot(WriteConfig("camera: { backend: libcamera }\nmodels: [.]\n")), 2, {"robot.yaml", "libcamera"});
   const std::string good = LoopingConfig();
   Expect(Robot(good, {"--camera", "libcamera"}), 2, {"robot.yaml", "libcamera"});
   Expect(Robot(good, {"--camera", "polaroid"}), 2, {"polaroid", "replay"});

@@ -21,10 +21,8 @@ class Digest {
     for (std::size_t i = 0; i < sizeof(T); ++i) Byte(static_cast<std::uint8_t>(number >> (8 * i)));
   }
   template <typename T>
-    requires std::is_enum_v<T>
-  void Add(T value) {
-    Add(static_cast<std::make_unsigned_t<std::underlying_type_t<T>>>(value));
-  }
+  requires std::is_enum_v<T>
+  void Add(T value) { Add(static_cast<std::make_unsigned_t<std::underlying_type_t<T>>>(value)); }
   void Add(bool value) { Byte(value ? 1 : 0); }
   void Add(float value) { Add(std::bit_cast<std::uint32_t>(value)); }
   void Add(double value) { Add(std::bit_cast<std::uint64_t>(value)); }
@@ -42,10 +40,7 @@ class Digest {
     }
   }
   template <typename... T>
-    requires(sizeof...(T) > 1)
-  void Add(const T&... values) {
-    (Add(values), ...);
-  }
+  requires(sizeof...(T) > 1) void Add(const T&... values) { (Add(values), ...); }
 
   [[nodiscard]] std::uint64_t value() const { return value_; }
 

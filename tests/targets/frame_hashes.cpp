@@ -78,8 +78,8 @@ bool ProcessFrame(std::uint32_t frame, const PackHeader& header, StageHasher& ha
   if (!ReadPack(g_left.data(), pixels) || !ReadPack(g_right.data(), pixels)) return Fail("ends within the frames");
   hasher.FrameBegins();
   StageObserver* const observer = header.hash_stages != 0 ? &hasher : nullptr;
-  const RecognizerError error =
-      g_recognizer.Process({g_left.data(), width, height, width}, {g_right.data(), width, height, width}, observer, g_result);
+  const RecognizerError error = g_recognizer.Process({g_left.data(), width, height, width},
+                                                     {g_right.data(), width, height, width}, observer, g_result);
   if (error != RecognizerError::kOk) return Fail(Describe(error));
   if (header.hash_stages == 0) return true;
   for (std::size_t s = 0; s < kStageCount; ++s) {

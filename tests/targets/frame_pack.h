@@ -1,4 +1,5 @@
-// A frame pack: calibration, models and raw frames in one file that needs no decoder, for targets without a file system.
+// A frame pack: calibration, models and raw frames in one file that needs no decoder, for targets without a file
+// system.
 #ifndef WIREPOSE_TESTS_TARGETS_FRAME_PACK_H_
 #define WIREPOSE_TESTS_TARGETS_FRAME_PACK_H_
 

@@ -48,13 +48,19 @@ void StageHasher::DoStageDone(Stage stage) {
       HashOrdered(recognizer_.left_segments(), digest, HashSegment);
       HashOrdered(recognizer_.right_segments(), digest, HashSegment);
       return;
-    case Stage::kStereoLines: return HashOrdered(recognizer_.lines(), digest, HashLine);
-    case Stage::kLineSets: return HashOrdered(recognizer_.line_sets().pairs, digest, HashPair);
-    case Stage::kCorrespondences: return HashMatches(digest);
-    case Stage::kHypotheses: return HashHypotheses(digest);
-    case Stage::kVerify: return HashCandidates(digest);
+    case Stage::kStereoLines:
+      return HashOrdered(recognizer_.lines(), digest, HashLine);
+    case Stage::kLineSets:
+      return HashOrdered(recognizer_.line_sets().pairs, digest, HashPair);
+    case Stage::kCorrespondences:
+      return HashMatches(digest);
+    case Stage::kHypotheses:
+      return HashHypotheses(digest);
+    case Stage::kVerify:
+      return HashCandidates(digest);
     case Stage::kRefine:
-    case Stage::kSelect: return;
+    case Stage::kSelect:
+      return;
   }
 }
 
@@ -79,7 +85,8 @@ void StageHasher::HashCandidates(Digest& digest) const {
     d.Add(c.model, c.order, c.score);
     d.Add(c.pose.T_camera_model, c.pose.covariance, c.pose.rms_px, c.pose.inliers, c.pose.ok);
     const Evidence& e = c.evidence;
-    d.Add(e.edges, e.contrast, e.faces, e.overrun, e.support, e.inside, e.visible_px, e.supported_edges, e.supported_faces);
+    d.Add(e.edges, e.contrast, e.faces, e.overrun, e.support, e.inside, e.visible_px, e.supported_edges,
+          e.supported_faces);
     for (const SetMember& m : c.members) d.Add(m.line, m.edge);
   });
 }

@@ -10,8 +10,8 @@
 namespace wirepose::testing {
 
 // Give it to Process as observer. Stages that run once a model are hashed over all models in turn.
-// kRefine has no hash of its own: kVerify hashes the refined poses with their evidence. Nor has kSelect, whose output is
-// the result.
+// kRefine has no hash of its own: kVerify hashes the refined poses with their evidence. Nor has kSelect, whose output
+// is the result.
 class StageHasher final : public StageObserver {
  public:
   explicit StageHasher(const Recognizer& recognizer) : recognizer_(recognizer) {}

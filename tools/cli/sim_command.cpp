@@ -47,7 +47,9 @@ T OrFail(Result<T, std::string> result) {
   if constexpr (!std::is_void_v<T>) return *std::move(result);
 }
 
-int Threads(int asked) { return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+int Threads(int asked) {
+  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
 
 std::string Minutes(double seconds) {
   const int whole = static_cast<int>(seconds + 0.5);
@@ -105,7 +107,8 @@ std::vector<fs::path> ScenarioFiles(const SuiteArguments& arguments) {
   std::vector<fs::path> chosen;
   for (const std::string& name : arguments.only) {
     const auto found = std::find_if(files.begin(), files.end(), [&](const fs::path& f) { return f.stem() == name; });
-    if (found == files.end()) throw UsageError("--only " + name + ": no such scenario in " + arguments.scenarios.string());
+    if (found == files.end())
+      throw UsageError("--only " + name + ": no such scenario in " + arguments.scenarios.string());
     chosen.push_back(*found);
   }
   return chosen;

@@ -138,7 +138,8 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
     if (!done) return Error(done.error());
     Record(set.frames[i], result, times, options.min_score, evaluation);
     if (!observer) continue;
-    const Outcome seen = observer({i, set.frames.size(), set.frames[i], recognizer, models, result, trace.Finish(result)});
+    const Outcome seen =
+        observer({i, set.frames.size(), set.frames[i], recognizer, models, result, trace.Finish(result)});
     if (!seen) return Error(seen.error());
   }
   evaluation.truth = truth;

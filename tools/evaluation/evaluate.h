@@ -49,7 +49,7 @@ struct FrameView {
   const dataset::FrameEntry& entry;
   const Recognizer& recognizer;  // with its intermediates of this frame
   const ModelSet& models;
-  const RecognitionResult& result;  // all detections, also those below min_score
+  const RecognitionResult& result;           // all detections, also those below min_score
   const std::vector<InstanceTrace>& traces;  // one per true instance; without poses unless options.trace
 };
 using FrameObserver = std::function<Result<void, std::string>(const FrameView&)>;

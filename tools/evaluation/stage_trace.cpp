@@ -66,12 +66,18 @@ void TraceEdge(const ImageEdge& edge, std::span<const Line3> lines, InstanceTrac
 
 std::string_view CauseName(MissCause cause) {
   switch (cause) {
-    case MissCause::kNone: return "found";
-    case MissCause::kNoLines: return "no lines";
-    case MissCause::kNoHypothesis: return "no hypothesis";
-    case MissCause::kRankedOut: return "ranked out";
-    case MissCause::kWrongPose: return "wrong pose";
-    case MissCause::kRejected: return "rejected";
+    case MissCause::kNone:
+      return "found";
+    case MissCause::kNoLines:
+      return "no lines";
+    case MissCause::kNoHypothesis:
+      return "no hypothesis";
+    case MissCause::kRankedOut:
+      return "ranked out";
+    case MissCause::kWrongPose:
+      return "wrong pose";
+    case MissCause::kRejected:
+      return "rejected";
   }
   return "?";
 }
@@ -99,13 +105,16 @@ void StageTrace::DoStageDone(Stage stage) {
   if (clock_ != nullptr) clock_->StageDone(stage);
   const auto pose_of = [](const auto& p) { return Pose{p.R.template cast<double>(), p.t.template cast<double>()}; };
   switch (stage) {
-    case Stage::kStereoLines: TraceLines(); break;
+    case Stage::kStereoLines:
+      TraceLines();
+      break;
     case Stage::kHypotheses:
       TracePoses(recognizer_.hypotheses(), &InstanceTrace::hypothesis, pose_of);
       TracePoses(recognizer_.sets(), &InstanceTrace::set, pose_of);
       ++models_seen_;
       break;
-    default: break;
+    default:
+      break;
   }
   if (clock_ != nullptr) clock_->Skip();
 }
@@ -160,7 +169,8 @@ const std::vector<InstanceTrace>& StageTrace::Finish(const RecognitionResult& re
       for (std::size_t m = 0; m < recognizer_.models().size(); ++m) {
         const PreparedModel& model = recognizer_.prepared_model(m);
         if (model.view.id != d.model_id) continue;
-        trace.detected = trace.detected || RelativeVertexError(model, d.T_camera_model, (*truth_)[i].T_camera_model) < 0.1;
+        trace.detected =
+            trace.detected || RelativeVertexError(model, d.T_camera_model, (*truth_)[i].T_camera_model) < 0.1;
       }
     }
   }

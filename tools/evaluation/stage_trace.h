@@ -14,8 +14,8 @@ namespace wirepose::evaluation {
 
 // A pose that a stage produced, against one true instance.
 struct TracedPose {
-  double error_d = 9;      // largest vertex distance modulo symmetry, in diameters
-  std::size_t rank = 0;    // 0 is the stage's best
+  double error_d = 9;    // largest vertex distance modulo symmetry, in diameters
+  std::size_t rank = 0;  // 0 is the stage's best
   float score = 0;
 };
 
@@ -34,7 +34,8 @@ struct InstanceTrace {
 enum class MissCause { kNone, kNoLines, kNoHypothesis, kRankedOut, kWrongPose, kRejected };
 std::string_view CauseName(MissCause cause);
 
-// The first stage that lost it. A pose within reach of the next stage: 0.3 d of hypotheses, 0.2 d of sets, 0.1 d refined.
+// The first stage that lost it. A pose within reach of the next stage: 0.3 d of hypotheses, 0.2 d of sets, 0.1 d
+// refined.
 MissCause CauseOf(const InstanceTrace& trace);
 
 // Observes Process on the caller's thread and passes every call on to `clock` (may be null), which does not time the

@@ -17,7 +17,9 @@ std::int32_t Call(Operation operation, const void* arguments) {
   return static_cast<std::int32_t>(r0);
 }
 
-std::uint32_t Word(const void* pointer) { return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(pointer)); }
+std::uint32_t Word(const void* pointer) {
+  return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(pointer));
+}
 
 int Open(const char* name, Mode mode) {
   const std::uint32_t arguments[] = {Word(name), mode, static_cast<std::uint32_t>(std::strlen(name))};

@@ -1,4 +1,5 @@
-// Start-up of a Cortex-M test image: floating point on, memory cleared, stack painted, constructors, program, exit status.
+// Start-up of a Cortex-M test image: floating point on, memory cleared, stack painted, constructors, program, exit
+// status.
 #include <cstddef>
 #include <cstdint>
 
@@ -25,7 +26,8 @@ int __aeabi_atexit(void*, void (*)(void*), void*) { return 0; }
   __asm volatile("dsb\n isb");
   for (std::uint32_t* p = __bss_start; p < __bss_end; ++p) *p = 0;
   auto* const frame = static_cast<std::uint32_t*>(__builtin_frame_address(0));
-  for (volatile std::uint32_t* p = __stack_bottom; p < frame - 64; ++p) *p = wirepose::testing::semihosting::kStackPaint;
+  for (volatile std::uint32_t* p = __stack_bottom; p < frame - 64; ++p)
+    *p = wirepose::testing::semihosting::kStackPaint;
   for (auto constructor = __init_array_start; constructor != __init_array_end; ++constructor) (*constructor)();
   wirepose::testing::semihosting::Exit(wirepose::testing::RunTarget());
 }
@@ -33,10 +35,19 @@ int __aeabi_atexit(void*, void (*)(void*), void*) { return 0; }
 
 // Stack, reset, then every exception a test image can meet.
 __attribute__((section(".vectors"), used)) static const void* const kVectors[16] = {
-    __stack_top, reinterpret_cast<const void*>(ResetHandler),
-    reinterpret_cast<const void*>(FaultHandler), reinterpret_cast<const void*>(FaultHandler),
-    reinterpret_cast<const void*>(FaultHandler), reinterpret_cast<const void*>(FaultHandler),
-    reinterpret_cast<const void*>(FaultHandler), reinterpret_cast<const void*>(FaultHandler),
-    nullptr, nullptr, nullptr, reinterpret_cast<const void*>(FaultHandler),
-    reinterpret_cast<const void*>(FaultHandler), nullptr, reinterpret_cast<const void*>(FaultHandler),
+    __stack_top,
+    reinterpret_cast<const void*>(ResetHandler),
+    reinterpret_cast<const void*>(FaultHandler),
+    reinterpret_cast<const void*>(FaultHandler),
+    reinterpret_cast<const void*>(FaultHandler),
+    reinterpret_cast<const void*>(FaultHandler),
+    reinterpret_cast<const void*>(FaultHandler),
+    reinterpret_cast<const void*>(FaultHandler),
+    nullptr,
+    nullptr,
+    nullptr,
+    reinterpret_cast<const void*>(FaultHandler),
+    reinterpret_cast<const void*>(FaultHandler),
+    nullptr,
+    reinterpret_cast<const void*>(FaultHandler),
     reinterpret_cast<const void*>(FaultHandler)};
