@@ -14,7 +14,7 @@ import pathlib
 
 import numpy as np
 
-DEPTH = 3
+DEPTH = 4
 ROUNDS = 120
 RATE = 0.1
 BINS = 24
