@@ -27,7 +27,7 @@ TEST(Score, WalksTheTrees) {
   std::array<ScoreTree, 2> trees;
   for (ScoreTree::Split& split : trees[0].splits) split = {0, 1};
   trees[0].splits[2] = {1, 5};
-  for (std::size_t i = 0; i < trees[0].leaves.size(); ++i) trees[0].leaves[i] = static_cast<float>(i);
+  for (std::size_t i = 0; i < trees[0].leaves.size(); ++i) trees[0].leaves[i] = 0.25F * static_cast<float>(i);
   trees[1].leaves.fill(-2);
   const ScoreTable table{0.5F, trees};
   const auto log_odds = [&](float first, float second) {
@@ -37,9 +37,10 @@ TEST(Score, WalksTheTrees) {
     const double p = static_cast<double>(ScoreOf(table, terms));
     return std::log(p / (1 - p));
   };
-  EXPECT_NEAR(log_odds(1, 9), 0.5 + 0 - 2, 1e-5);  // at the threshold: left, left, left
-  EXPECT_NEAR(log_odds(2, 5), 0.5 + 5 - 2, 1e-4);  // right, left by the second term, right
-  EXPECT_NEAR(log_odds(2, 6), 0.5 + 7 - 2, 1e-3);
+  constexpr auto kLast = static_cast<double>(ScoreTree::kSplits);
+  EXPECT_NEAR(log_odds(1, 9), 0.5 - 2, 1e-4);                                     // at the threshold: always left
+  EXPECT_NEAR(log_odds(2, 6), 0.5 + 0.25 * kLast - 2, 1e-3);                      // always right
+  EXPECT_NEAR(log_odds(2, 5), 0.5 + 0.25 * (kLast - (kLast + 1) / 4) - 2, 1e-3);  // left once, at the second split
 }
 
 TEST(Score, EmptyTableIsItsBias) {

@@ -181,7 +181,10 @@ TEST_F(VerificationTest, WhatIsHiddenAbstains) {
   const float hidden = DropOccluded({}, *disparity_, scratch_->surface, scratch_->samples);
   EXPECT_GT(hidden, 0.25F);
   EXPECT_LT(hidden, 0.75F);
-  for (const EdgeSample& s : scratch_->samples) EXPECT_GT(s.left.x(), centre - 12);
+  // At acute corners no place beside the edge is the object's: such samples stay.
+  int left_over = 0;
+  for (const EdgeSample& s : scratch_->samples) left_over += s.left.x() < centre - 12 ? 1 : 0;
+  EXPECT_LT(left_over, static_cast<int>(scratch_->samples.size()) / 10);
 }
 
 // Any pose at all: numbers stay numbers, shares stay shares.
