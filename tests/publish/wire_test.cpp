@@ -198,6 +198,26 @@ TEST_F(WireTest, WhoComesLateGetsTheLastHealth) {
   EXPECT_EQ(received->value.models._buffer[0].checksum, 0xC0FFEE07U);
 }
 
+// Who watches /diagnostics sees that losses have stopped; the uptime of the reports is what counts.
+TEST_F(WireTest, DiagnosticsCalmDownAfterLosses) {
+  const dds_entity_t reader = MatchedReader(TopicId::kDiagnostics);
+  const auto received = std::make_unique<DiagnosticsMessage>();
+  const auto bus_level_at = [&](std::uint64_t seconds, std::uint64_t dropped) -> int {
+    HealthReport report;
+    report.uptime_ns = seconds * 1'000'000'000;
+    report.results_dropped = dropped;
+    publisher_->Publish(report);
+    Take(reader, &received->value);
+    return received->value.status._buffer[2].level;
+  };
+  EXPECT_EQ(bus_level_at(5, 0), 0);
+  EXPECT_STREQ(received->value.status._buffer[2].name, "wireposed: bus");
+  EXPECT_EQ(bus_level_at(6, 4), 1);
+  EXPECT_EQ(bus_level_at(35, 4), 1);
+  EXPECT_EQ(bus_level_at(36, 4), 0);
+  EXPECT_EQ(bus_level_at(37, 5), 1);
+}
+
 TEST_F(WireTest, ReportsArriveInOrder) {
   const dds_entity_t reader = MatchedReader(TopicId::kRecognition);
   for (std::uint64_t i = 1; i <= 3; ++i) {
