@@ -75,8 +75,8 @@ class StressTest : public test::BusTest {
     const std::size_t first = LowestUseKib(deaths.lease);
     Kill(deaths);
     const std::size_t second = LowestUseKib(deaths.lease, first + kFlat_kib);
-    std::printf("%d killed, twice: %zu KiB before, %zu after the first, %zu after the second, %zu at most\n", deaths.count,
-                before, first, second, DdsPoolUse().high_water >> 10);
+    std::printf("%d killed, twice: %zu KiB before, %zu after the first, %zu after the second, %zu at most\n",
+                deaths.count, before, first, second, DdsPoolUse().high_water >> 10);
     EXPECT_LE(first, before + kGrowth_kib);
     EXPECT_LE(second, first + kFlat_kib) << "the dead are not forgotten";
     ExpectHealthy();
@@ -100,9 +100,7 @@ TEST_F(StressTest, KilledSubscribersAreForgotten) {
       {20, milliseconds(100), seconds(2),
        "<CycloneDDS><Domain><Discovery><LeaseDuration>2 s</LeaseDuration></Discovery></Domain></CycloneDDS>"});
 }
-TEST_F(StressTest, LongFiftyKilledSubscribersAreForgotten) {
-  KillSubscribers({50, milliseconds(500), kLease, ""});
-}
+TEST_F(StressTest, LongFiftyKilledSubscribersAreForgotten) { KillSubscribers({50, milliseconds(500), kLease, ""}); }
 
 // It acknowledges nothing and takes nothing; vision and the others do not notice.
 TEST_F(StressTest, StoppedSubscriberHoldsUpNobody) {

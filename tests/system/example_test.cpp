@@ -13,9 +13,7 @@ namespace fs = std::filesystem;
 class ExampleTest : public RobotTest {
  protected:
   // The part for developers, under a prefix of its own.
-  void Install() {
-    RunCmake("install", {"--install", WIREPOSE_BUILD, "--prefix", prefix(), "--component", "dev"});
-  }
+  void Install() { RunCmake("install", {"--install", WIREPOSE_BUILD, "--prefix", prefix(), "--component", "dev"}); }
   // Configures and builds the installed example.
   void Build() {
     RunCmake("configure", {"-S", prefix() + "/share/wirepose/examples/cpp_subscriber", "-B", build(),
