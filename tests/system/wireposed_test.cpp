@@ -49,6 +49,10 @@ TEST_F(WireposedTest, SubscriberInAnotherProcessGetsEveryTopic) {
   ASSERT_EQ(health.back()["models"].size(), 1u);
   EXPECT_EQ(health.back()["models"][0]["name"], "parcel_box");
   EXPECT_NE(health.back()["models"][0]["checksum"], 0);
+  const Json& pool = health.back()["pool"];
+  EXPECT_GT(pool["high_water_bytes"], 100 << 10) << "DDS works in the static pool, and health says how much of it";
+  EXPECT_GE(pool["high_water_bytes"], pool["used_bytes"]);
+  EXPECT_NEAR(pool["capacity_bytes"].get<double>(), 1 << 20, 100);
   EXPECT_EQ(Messages(ros, "detections").at(0)["header"]["frame_id"], "test_optical");
 }
 
