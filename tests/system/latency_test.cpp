@@ -50,7 +50,8 @@ TEST_F(LatencyTest, LongCaptureToSubscriber) {
   }
   ASSERT_FALSE(frame.is_null()) << health;
   const double recognition_p50_us = 1e-3 * frame["p50_ns"].get<double>();
-  std::printf("recognition: p50 %.1f ms, p99 %.1f ms\n", 1e-3 * recognition_p50_us, 1e-6 * frame["p99_ns"].get<double>());
+  std::printf("recognition: p50 %.1f ms, p99 %.1f ms\n", 1e-3 * recognition_p50_us,
+              1e-6 * frame["p99_ns"].get<double>());
   for (const std::string& line : subscriber.OutLines()) {
     if (line[0] != '{') continue;
     const Json tally = Json::parse(line);

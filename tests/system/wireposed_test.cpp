@@ -85,9 +85,10 @@ TEST_F(WireposedTest, WatchTellsMissedDeadlinesAndLostLiveliness) {
   auto robot = std::make_unique<Process>(folder_, "robot", Robot(config), lease);
   // On a terminal.
   Process watch(folder_, "watch",
-                {"/usr/bin/script", "-qfec",
-                 WIREPOSE_PROGRAM " watch --deadline 300 --loopback --domain " + domain_, "/dev/null"});
-  // Is it there, in the newest picture that says `before`, below that? Notes stay for a while, the newest at the bottom.
+                {"/usr/bin/script", "-qfec", WIREPOSE_PROGRAM " watch --deadline 300 --loopback --domain " + domain_,
+                 "/dev/null"});
+  // Is it there, in the newest picture that says `before`, below that? Notes stay for a while, the newest at the
+  // bottom.
   const auto told = [&](const std::string& text, const std::string& before = "") {
     for (int i = 0; i < 1500; ++i) {
       const std::string out = watch.Out();
