@@ -13,7 +13,7 @@ LOADER = "lib/ld-linux-aarch64.so.1"
 # What the board runs besides the sysroot's libraries; the kernel's name has its version and is found by apt.
 PACKAGES = ("busybox-static", "udev", "libblkid1", "libkmod2", "libpcre2-8-0", "libselinux1")
 MODULES = ("virtio_pci", "virtio_net", "xhci_pci", "uvcvideo")
-APPLETS = ("sh", "cat", "cut", "ip", "kill", "ls", "mkdir", "modprobe", "mount", "poweroff", "start-stop-daemon", "uname",
+APPLETS = ("sh", "cut", "dmesg", "ip", "ls", "mkdir", "modprobe", "mount", "poweroff", "start-stop-daemon", "tail", "uname",
            "xargs")
 RULES = ("80-drivers.rules",)
 
@@ -29,7 +29,8 @@ class Packages:
         self._folder = folder
         self._options = ["-o", "APT::Architecture=arm64", "-o", "APT::Architectures=arm64", "-o", f"Dir::State={world}/state",
                          "-o", f"Dir::State::status={world}/state/status", "-o", f"Dir::Cache={world}/cache",
-                         "-o", "Dir::Etc::preferencesparts=/dev/null", "-o", "APT::Sandbox::User=", "-o", "Debug::NoLocking=1"]
+                         "-o", "Dir::Etc::preferencesparts=/dev/null", "-o", "APT::Sandbox::User=", "-o", "Debug::NoLocking=1",
+                         "-o", "Acquire::Languages=none", "-o", "APT::Get::List-Cleanup=0"]
         folder.mkdir(parents=True, exist_ok=True)
 
     def _apt(self, tool, *arguments):
@@ -37,7 +38,13 @@ class Packages:
 
     def kernel(self):
         """The package of the newest stock kernel."""
-        found = re.search(r"Depends: (linux-image-\S+)", self._apt("apt-cache", "depends", "linux-image-arm64").stdout)
+        def newest():
+            return re.search(r"Depends: (linux-image-\S+)", self._apt("apt-cache", "depends", "linux-image-arm64").stdout)
+
+        found = newest()
+        if not found:
+            self._apt("apt-get", "update")
+            found = newest()
         if not found:
             raise Unavailable("the package sources have no linux-image-arm64; add Debian's main to /etc/apt")
         return found.group(1)
@@ -53,6 +60,9 @@ class Packages:
         for name in names:
             if not list(self._folder.glob(f"{name}_*.deb")):
                 fetched = self._apt("apt-get", "download", name)
+                if fetched.returncode:  # a security update may have replaced it since the lists were fetched
+                    self._apt("apt-get", "update")
+                    fetched = self._apt("apt-get", "download", name)
                 if fetched.returncode:
                     raise Unavailable(f"{name} for arm64 cannot be fetched ({fetched.stderr.strip().splitlines()[-1]})")
             subprocess.run(["dpkg-deb", "-x", next(self._folder.glob(f"{name}_*.deb")), root], check=True)
