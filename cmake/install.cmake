@@ -1,4 +1,5 @@
-# What scripts/package puts into packages. Components: robot (wireposed), dev (the core as a library), tools (wirepose).
+# What scripts/package puts into packages. Components: robot (wireposed), dev (the core and the message types as libraries,
+# examples), tools (wirepose).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -12,6 +13,21 @@ install(FILES src/capacities.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/wirepose 
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/WireposeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES cmake/WireposeConfig.cmake ${PROJECT_BINARY_DIR}/WireposeConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Wirepose COMPONENT dev)
+
+# The types on the bus: as a library, and as IDL for other languages and DDS implementations.
+if(TARGET wirepose_idl)
+  set_target_properties(wirepose_idl PROPERTIES EXPORT_NAME idl)
+  install(TARGETS wirepose_idl EXPORT WireposeIdl ARCHIVE COMPONENT dev)
+  install(EXPORT WireposeIdl NAMESPACE Wirepose:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Wirepose COMPONENT dev)
+  file(GLOB idl_files RELATIVE ${PROJECT_SOURCE_DIR}/dds_idl CONFIGURE_DEPENDS dds_idl/*.idl)
+  foreach(file IN LISTS idl_files)
+    string(REGEX REPLACE "\\.idl$" ".h" header ${file})
+    install(FILES ${PROJECT_BINARY_DIR}/dds_idl/${header}
+      DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/wirepose/dds_idl COMPONENT dev)
+    install(FILES dds_idl/${file} DESTINATION ${CMAKE_INSTALL_DATADIR}/wirepose/idl COMPONENT dev)
+  endforeach()
+  install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/wirepose COMPONENT dev)
+endif()
 
 if(TARGET wireposed)
   install(TARGETS wireposed RUNTIME COMPONENT robot)

@@ -2,12 +2,11 @@
 // Usage: wirepose_subscriber [FRAMES [MODEL_ID]]     FRAMES 0: without end; MODEL_ID: let wireposed search for it only
 // The domain is ROS_DOMAIN_ID's, 0 without; CYCLONEDDS_URI holds for this program as for every other.
 #include <dds/dds.h>
+#include <dds_idl/wirepose.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-
-#include "wirepose.h"
 
 namespace {
 

@@ -212,11 +212,10 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   }
   timer.Done(Stage::kRefine);
 
-  const VerifyInput input{camera(),          left_edges_,  right_edges_,  left_normalized_,
-                          right_normalized_, left_smooth_, right_smooth_, disparity_};
+  const VerifyInput input{camera(), left_edges_, right_edges_, left_smooth_, right_smooth_, disparity_};
   for (Candidate& candidate : refined) {
-    GatherEvidence(params_.verify, input, model, candidate.pose.T_camera_model, verify_scratch_, candidate.evidence);
-    candidate.score = ScoreOf(params_.select.score, candidate.evidence);
+    GatherEvidence(params_.verify, input, model, candidate.pose, verify_scratch_, candidate.evidence);
+    candidate.score = ScoreOf(DefaultScoreTable(), TermsOf(candidate.evidence));
     candidates_.Push(candidate);
   }
   timer.Done(Stage::kVerify);
@@ -248,7 +247,8 @@ void Recognizer::Report(RecognitionResult& result) {
     detection.T_camera_model = T_raw_rectified * candidate.pose.T_camera_model;
     detection.covariance = turn * candidate.pose.covariance * turn.transpose();
     detection.score = candidate.score;
-    detection.visible_fraction = candidate.evidence.support * candidate.evidence.inside;
+    detection.visible_fraction =
+        candidate.evidence.edges.support * candidate.evidence.edges.inside * (1 - candidate.evidence.hidden);
     result.detections.push_back(detection);
   }
   result.statistics.detections = {static_cast<std::uint32_t>(accepted_.size()),

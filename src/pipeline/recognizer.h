@@ -24,6 +24,7 @@
 #include "stages/promotion.h"
 #include "stages/rectification.h"
 #include "stages/refinement.h"
+#include "stages/score.h"
 #include "stages/segments.h"
 #include "stages/selection.h"
 #include "stages/stereo_lines.h"

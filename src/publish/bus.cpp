@@ -13,14 +13,14 @@
 namespace wirepose {
 namespace {
 
-// Small buffers and stacks: one participant needs about 0.2 MB instead of Cyclone's 2.5. It calls out once a second,
+// Small buffers and stacks: one participant needs about 0.2 MB instead of Cyclone's 2.5. It calls out twice a second,
 // not once in 30: peers whose lease ran out while the network was cut find each other again at once.
 constexpr char kSmall[] =
     R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain Id="any">
 <General><MaxMessageSize>8 KiB</MaxMessageSize></General>
 <Sizing><ReceiveBufferSize>72 KiB</ReceiveBufferSize><ReceiveBufferChunkSize>16 KiB</ReceiveBufferChunkSize></Sizing>
 <Internal><MultipleReceiveThreads>false</MultipleReceiveThreads></Internal>
-<Discovery><SPDPInterval>1 s</SPDPInterval></Discovery>
+<Discovery><SPDPInterval>500 ms</SPDPInterval></Discovery>
 <Threads><Thread Name="recv"><StackSize>128 KiB</StackSize></Thread></Threads>
 </Domain></CycloneDDS>)";
 

@@ -79,16 +79,17 @@ void AddCamera(const HealthReport& report, DiagnosticsMessage& message) {
   AddText(status, "last error", report.last_error);
 }
 
-void AddRecognition(const HealthReport& report, DiagnosticsMessage& message) {
+void AddRecognition(const HealthReport& report, const RecentLosses& losses, DiagnosticsMessage& message) {
   Status& status = Add(message, "wireposed: recognition", report.camera);
   for (const StageTime& time : report.stage_times) {
     AddValue(status, std::string_view(time.stage), "p50 %.3f ms, p99 %.3f ms", 1e-6 * static_cast<double>(time.p50_ns),
              1e-6 * static_cast<double>(time.p99_ns));
   }
-  if (report.lists.detections.dropped > 0) Raise(status, kWarning, "more objects than a message can hold");
+  AddValue(status, "detections dropped", "%u", report.lists.detections.dropped);
+  if (losses.detections) Raise(status, kWarning, "more objects than a message can hold");
 }
 
-void AddBus(const HealthReport& report, DiagnosticsMessage& message) {
+void AddBus(const HealthReport& report, const RecentLosses& losses, DiagnosticsMessage& message) {
   Status& status = Add(message, "wireposed: bus", "");
   const BusEvents& events = report.events;
   AddValue(status, "subscribers", "%u", events.subscribers);
@@ -99,8 +100,8 @@ void AddBus(const HealthReport& report, DiagnosticsMessage& message) {
   AddValue(status, "commands accepted", "%u", events.commands_accepted);
   AddValue(status, "commands refused", "%u", events.commands_refused);
   AddValue(status, "pool high water", "%zu of %zu KiB", report.pool.high_water >> 10, report.pool.capacity >> 10);
-  if (report.results_dropped > 0) Raise(status, kWarning, "results were dropped: the bus is slower than the camera");
-  if (report.write_errors > 0) Raise(status, kWarning, "messages were refused by DDS");
+  if (losses.results) Raise(status, kWarning, "results were dropped: the bus is slower than the camera");
+  if (losses.messages) Raise(status, kWarning, "messages were refused by DDS");
   if (report.pool.used * 100 > report.pool.capacity * kPoolWarning_percent) {
     Raise(status, kWarning, "the DDS pool is nearly full: raise dds.pool_kib");
   }
@@ -122,12 +123,12 @@ DiagnosticsMessage::DiagnosticsMessage() {
   for (std::size_t i = 0; i < kDiagnosticStatuses; ++i) Attach(statuses_[i].values, values_[i]);
 }
 
-void FillMessage(const HealthReport& report, DiagnosticsMessage& message) {
+void FillMessage(const HealthReport& report, const RecentLosses& losses, DiagnosticsMessage& message) {
   message.value.header = RosHeader(report.stamp, "");
   message.value.status._length = 0;
   AddCamera(report, message);
-  AddRecognition(report, message);
-  AddBus(report, message);
+  AddRecognition(report, losses, message);
+  AddBus(report, losses, message);
   AddModels(report, message);
 }
 

@@ -12,6 +12,7 @@
 #include "dds_idl/wirepose.h"
 #include "publish/commands.h"
 #include "publish/image_report.h"
+#include "publish/loss_monitor.h"
 #include "publish/reports.h"
 #include "publish/scene_report.h"
 
@@ -158,8 +159,8 @@ void FillMessage(const SceneReport& scene, std::string_view frame_id, MarkersMes
 void FillMessage(const ImageReport& image, std::string_view frame_id, sensor_msgs_msg_dds__Image_& message);
 
 // rt/diagnostics: four statuses, "wireposed: camera", "... recognition", "... bus" and "... models", with level and
-// values as robot monitors show them.
-void FillMessage(const HealthReport& report, DiagnosticsMessage& message);
+// values as robot monitors show them. Counters are since the start; losses raise a level while they are recent.
+void FillMessage(const HealthReport& report, const RecentLosses& losses, DiagnosticsMessage& message);
 
 // wirepose/command_status.
 void FillMessage(const CommandAnswer& answer, CommandStatusMessage& message);

@@ -149,7 +149,7 @@ void Publisher::SendHealth() {
   health_report_.pool = DdsPoolUse();
   health_report_.events = events_;
   FillMessage(health_report_, config_.version, health_);
-  FillMessage(health_report_, diagnostics_);
+  FillMessage(health_report_, losses_.Update(health_report_), diagnostics_);
   Write(TopicId::kHealth, &health_.value);
   Write(TopicId::kDiagnostics, &diagnostics_.value);
 }

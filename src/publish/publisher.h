@@ -107,6 +107,7 @@ class Publisher {
   CommandStatusMessage command_status_;
   CommandAnswer answer_;
   BusEvents events_;
+  LossMonitor losses_;
 
   std::atomic<std::uint64_t> write_errors_{0};
   std::atomic<bool> scene_wanted_{false}, image_wanted_{false};

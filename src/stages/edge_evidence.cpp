@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/portable_math.h"
 #include "stages/edge_profile.h"
 
 namespace wirepose {
@@ -65,10 +64,41 @@ class EdgePiece {
   float length_px_ = 0;
 };
 
-// Support of one model edge: samples in both images, hits at the edge itself and beside it.
-struct EdgeSupport {
-  float length_px = 0, samples = 0, hits = 0, chances = 0, chance_hits = 0, supported_px = 0;
+// A supporting image edge at a sample: how far from the model edge, in the left image and in the worse of both.
+struct Support {
+  float left_px = 0, worst_px = 1e9F;
+  [[nodiscard]] bool found() const { return worst_px < 1e9F; }
 };
+
+// Sums over the samples of one model edge.
+struct EdgeSums {
+  float length_px = 0, samples = 0, hits = 0, sharp = 0, chances = 0, chance_hits = 0;
+  float offset = 0, offset_squared = 0;         // of the hits in the left image, px
+  float piece_px = 0, distinct = 0, clear = 0;  // of averaged pieces, weighted by their length
+
+  void Add(const Support& support, float sharp_offset_px) {
+    samples += 1;
+    if (!support.found()) return;
+    hits += 1;
+    sharp += support.worst_px < sharp_offset_px ? 1.0F : 0.0F;
+    offset += support.left_px;
+    offset_squared += support.left_px * support.left_px;
+  }
+  void Add(const EdgePiece& piece, float noise_floor) {
+    if (piece.count() == 0) return;
+    const float distinctness = piece.Distinctness(noise_floor);
+    piece_px += piece.length_px();
+    distinct += piece.length_px() * distinctness;
+    clear += distinctness > 0.5F ? piece.length_px() : 0.0F;
+  }
+  void Add(const EdgeSums& other) {
+    samples += other.samples, hits += other.hits, sharp += other.sharp;
+    chances += other.chances, chance_hits += other.chance_hits;
+    length_px += other.length_px, piece_px += other.piece_px, distinct += other.distinct, clear += other.clear;
+  }
+};
+
+float Share(float part, float whole) { return whole > 0 ? part / whole : 0; }
 
 using Peaks = FixedVector<EdgePeak, 2 * EdgeProfile::kMaxRange>;
 
@@ -79,48 +109,35 @@ void CollectPeaks(const EdgeProfile& profile, float threshold, Peaks& peaks) {
 
 class Gatherer {
  public:
-  Gatherer(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model, const Vector3& eye,
-           Evidence& out)
-      : params_(params), in_(input), model_(model), eye_(eye), out_(out) {}
+  Gatherer(const VerifyParams& params, const VerifyInput& input) : params_(params), in_(input) {}
 
-  void Run(const EdgeSamples& samples) {
-    std::array<EdgeSupport, kMaxModelEdges> support{};
-    float inside = 0, total = 0, supported = 0;
+  void Run(const EdgeSamples& samples, EdgeEvidence& out) {
+    float total_px = 0;
+    std::size_t edge = 0;
     for (const EdgeSample& s : samples) {
-      if (s.edge != edge_ || piece_.count() == params_.piece_samples) ClosePiece();
-      edge_ = s.edge;
-      total += s.weight_px;
+      if (s.edge != edge || piece_.count() == params_.piece_samples) ClosePiece(edge);
+      edge = s.edge;
+      total_px += s.weight_px;
       if (!in_.left_edges.Contains(s.left.x(), s.left.y())) continue;
-      inside += s.weight_px;
-      support[s.edge].length_px += s.weight_px;
-      if (!Test(s, support[s.edge])) continue;
-      supported += s.weight_px;
-      support[s.edge].supported_px += s.weight_px;
+      sums_[edge].length_px += s.weight_px;
+      Test(s, sums_[edge]);
     }
-    ClosePiece();
-    Sum(support);
-    out_.distinct = piece_px_ > 0 ? distinct_px_ / piece_px_ : 0;
-    out_.support = inside > 0 ? supported / inside : 0;
-    out_.inside = total > 0 ? inside / total : 0;
-    out_.visible_px = inside;
-    CountSupported(support);
+    ClosePiece(edge);
+    Summarize(total_px, out);
   }
 
  private:
-  void ClosePiece() {
-    if (piece_.count() > 0) {
-      distinct_px_ += piece_.length_px() * piece_.Distinctness(params_.noise_floor);
-      piece_px_ += piece_.length_px();
-    }
+  void ClosePiece(std::size_t edge) {
+    sums_[edge].Add(piece_, params_.noise_floor);
     piece_ = {};
   }
 
-  // True when both images show an edge here (the left one alone where the right image does not reach).
-  bool Test(const EdgeSample& s, EdgeSupport& support) {
+  // Do both images show an edge here (the left one alone where the right image does not reach)? And beside it?
+  void Test(const EdgeSample& s, EdgeSums& sums) {
     // Windows beside the edge that tell what chance is; the smoothing keeps those within 5 px dependent.
     constexpr std::array<float, 4> kChances = {-10, -6, 6, 10};
     const Vector2 normal(-s.tangent.y(), s.tangent.x());
-    if (!left_.Read(in_.left_smooth, in_.camera.width, in_.camera.height, s.left, normal, kRange)) return false;
+    if (!left_.Read(in_.left_smooth, in_.camera.width, in_.camera.height, s.left, normal, kRange)) return;
     const Vector2 right_at(s.left.x() - s.disparity, s.left.y());
     const Vector2 right_normal(-s.tangent_right.y(), s.tangent_right.x());
     const bool right =
@@ -129,82 +146,73 @@ class Gatherer {
     CollectPeaks(left_, in_.left_edges.threshold, left_peaks_);
     right_peaks_.clear();
     if (right) CollectPeaks(right_, in_.right_edges.threshold, right_peaks_);
-    for (const float chance : kChances) support.chance_hits += Hits(chance, right) ? 1.0F : 0.0F;
-    support.chances += static_cast<float>(kChances.size());
-    support.samples += 1;
-    const bool hit = Hits(0, right);
-    if (hit) support.hits += 1;
-    return hit;
+    for (const float chance : kChances) sums.chance_hits += Find(chance, right).found() ? 1.0F : 0.0F;
+    sums.chances += static_cast<float>(kChances.size());
+    sums.Add(Find(0, right), params_.sharp_offset_px);
   }
 
-  [[nodiscard]] bool Hits(float at, bool right) const {
+  // The nearest support of an edge at offset `at`.
+  [[nodiscard]] Support Find(float at, bool right) const {
+    Support best;
     for (const EdgePeak& l : left_peaks_) {
-      if (std::abs(l.offset_px - at) > params_.max_offset_px) continue;
-      if (!right) return true;
+      const float left_px = std::abs(l.offset_px - at);
+      if (left_px > params_.max_offset_px || left_px >= best.worst_px) continue;
+      if (!right) {
+        best = {l.offset_px - at, left_px};
+        continue;
+      }
       for (const EdgePeak& r : right_peaks_) {
-        if (std::abs(r.offset_px - at) < params_.max_offset_px && (l.gradient > 0) == (r.gradient > 0) &&
+        const float worst_px = std::max(left_px, std::abs(r.offset_px - at));
+        if (worst_px < std::min(best.worst_px, params_.max_offset_px) && (l.gradient > 0) == (r.gradient > 0) &&
             std::abs(l.offset_px - r.offset_px) < params_.max_difference_px) {
-          return true;
+          best = {l.offset_px - at, worst_px};
         }
       }
     }
-    return false;
+    return best;
   }
 
-  void Sum(const std::array<EdgeSupport, kMaxModelEdges>& support) {
-    EdgeSupport all;
-    for (const EdgeSupport& e : support) {
-      out_.edges += LogRatio(e);
-      all.samples += e.samples;
-      all.hits += e.hits;
-      all.chances += e.chances;
-      all.chance_hits += e.chance_hits;
-    }
-    if (all.samples > 0) out_.contrast = all.hits / all.samples - all.chance_hits / all.chances;
-  }
-
-  [[nodiscard]] float LogRatio(const EdgeSupport& e) const {
-    if (e.samples < 1) return 0;
-    // An edge of one direction within 2 px is what the edge map counts; equal polarity and offset in both images are
-    // rarer.
-    const float chance = std::clamp(0.7F * in_.left_edges.background, 0.03F, 0.4F);
-    const float weight = e.length_px / (e.samples * params_.independent_px);
-    return weight * (e.hits * Log(params_.support_rate / chance) +
-                     (e.samples - e.hits) * Log((1 - params_.support_rate) / (1 - chance)));
-  }
-
-  void CountSupported(const std::array<EdgeSupport, kMaxModelEdges>& support) {
-    std::array<std::uint32_t, kMaxModelFaces / 32> faces{};
-    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
-      if (support[e].length_px <= 0 || support[e].supported_px < 0.5F * support[e].length_px) continue;
-      ++out_.supported_edges;
-      for (const std::uint16_t face : model_.view.edges[e].face) {
-        if (face == kNoFace || !IsTowards(model_.view.faces[face], eye_)) continue;
-        std::uint32_t& word = faces[face / 32];
-        const std::uint32_t bit = 1U << (face % 32);
-        if ((word & bit) == 0) ++out_.supported_faces;
-        word |= bit;
+  void Summarize(float total_px, EdgeEvidence& out) const {
+    out = {.weakest_edge = 1, .dimmest_edge = 1};
+    EdgeSums all;
+    float variance = 0, spread_hits = 0;
+    for (const EdgeSums& e : sums_) {
+      all.Add(e);
+      if (e.hits > 3) {
+        variance += e.offset_squared - e.offset * e.offset / e.hits;
+        spread_hits += e.hits;
       }
+      if (e.length_px < params_.min_edge_px || e.samples < 3) continue;
+      out.edges += 1;
+      out.full_edges += Share(e.hits, e.samples) > 0.8F ? 1.0F : 0.0F;
+      out.weakest_edge = std::min(out.weakest_edge, Share(e.hits, e.samples));
+      out.dimmest_edge = std::min(out.dimmest_edge, Share(e.distinct, e.piece_px));
     }
+    out.full_edges = Share(out.full_edges, out.edges);
+    out.visible_px = all.length_px;
+    out.inside = Share(all.length_px, total_px);
+    out.support = Share(all.hits, all.samples);
+    out.chance = Share(all.chance_hits, all.chances);
+    out.sharp = Share(all.sharp, all.samples);
+    out.sharp_of_support = Share(all.sharp, all.hits);
+    out.spread_px = spread_hits > 0 ? std::sqrt(std::max(0.0F, variance / spread_hits)) : params_.max_offset_px;
+    out.distinct = Share(all.distinct, all.piece_px);
+    out.clear = Share(all.clear, all.piece_px);
   }
 
   const VerifyParams& params_;
   const VerifyInput& in_;
-  const PreparedModel& model_;
-  Vector3 eye_;
-  Evidence& out_;
   EdgeProfile left_, right_;
   Peaks left_peaks_, right_peaks_;
   EdgePiece piece_;
-  std::uint16_t edge_ = 0;
-  float distinct_px_ = 0, piece_px_ = 0;
+  std::array<EdgeSums, kMaxModelEdges> sums_{};
 };
 
 }  // namespace
 
-void GatherEdgeEvidence(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model,
-                        const Vector3& eye, const EdgeSamples& samples, Evidence& out) {
-  Gatherer(params, input, model, eye, out).Run(samples);
+void GatherEdgeEvidence(const VerifyParams& params, const VerifyInput& input, const EdgeSamples& samples,
+                        EdgeEvidence& out) {
+  Gatherer(params, input).Run(samples, out);
 }
 
 }  // namespace wirepose

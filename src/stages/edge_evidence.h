@@ -6,11 +6,9 @@
 
 namespace wirepose {
 
-// Fills the parts of `out` that speak of edges: edges, contrast, distinct, support, inside, visible_px, supported_edges
-// and supported_faces. `eye` is the camera centre in the model frame, `samples` the model's visible edges at the pose,
-// edge by edge. O(samples * profile length).
-void GatherEdgeEvidence(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model,
-                        const Vector3& eye, const EdgeSamples& samples, Evidence& out);
+// All of `out` but `overrun`, from the model's visible edges at the pose, edge by edge. O(samples * profile length).
+void GatherEdgeEvidence(const VerifyParams& params, const VerifyInput& input, const EdgeSamples& samples,
+                        EdgeEvidence& out);
 
 }  // namespace wirepose
 

@@ -2,9 +2,11 @@
 #ifndef WIREPOSE_STAGES_EVIDENCE_H_
 #define WIREPOSE_STAGES_EVIDENCE_H_
 
+#include <array>
+
 #include "stages/disparity_map.h"
 #include "stages/edge_map.h"
-#include "stages/normalize.h"
+#include "stages/occlusion.h"
 #include "stages/sample_edges.h"
 #include "stages/surface_evidence.h"
 
@@ -12,39 +14,55 @@ namespace wirepose {
 
 struct VerifyParams {
   SampleParams samples{.step_px = 4};
-  int piece_samples = 5;     // neighbouring samples of an edge whose profiles are averaged
-  float noise_floor = 0.6F;  // grey levels per pixel that an averaged profile may show of nothing
+  OcclusionParams occlusion;
   SurfaceEvidenceParams surface;
-  float support_rate = 0.7F;       // share of a true object's visible edge samples that show an edge
-  float independent_px = 12;       // samples nearer to each other along an edge repeat what the first one said
+  int piece_samples = 5;           // neighbouring samples of an edge whose profiles are averaged
+  float noise_floor = 0.6F;        // grey levels per pixel that an averaged profile may show of nothing
   float max_offset_px = 2.2F;      // of a supporting image edge from the model edge, in each image ...
   float max_difference_px = 4.0F;  // ... and between both images
-  int face_grid_px = 6;            // spacing of patches on a face
-  int max_face_patches = 32;       // per face; the grid widens to fit
-  float min_face_px2 = 250;        // smaller faces abstain
+  float sharp_offset_px = 0.8F;    // support this close is sharp: refinement brings a true pose that near
+  float min_edge_px = 20;          // visible; what is shorter has no say in shares of edges
 };
 
-// What speaks for and against a pose. All terms are log-likelihood ratios up to calibration: 0 abstains.
-struct Evidence {
-  float edges = 0;          // visible edge samples with and without an image edge, against the frame's background
-  float contrast = 0;       // share of samples with an edge minus the same share beside the edges, -1..1
-  float distinct = 0;       // how much the edges stand out from what is beside them, in both images, 0..1
-  SurfaceEvidence surface;  // of the disparity map
-  float faces = 0;          // visible faces predict the right image from the left one, compared with shifted depths
-  float overrun = 0;     // share of edge ends beyond which the image edge goes on, 0..1: clutter has no corners there
-  float support = 0;     // share of visible edge length in the left image that shows an edge, 0..1
-  float inside = 0;      // share of the visible edges that lies in the left image, 0..1
-  float visible_px = 0;  // length of visible edges in the left image
-  std::uint16_t supported_edges = 0;  // edges with support of more than half
-  std::uint16_t supported_faces = 0;  // faces that touch such edges (the paper ranks by lines and faces)
+// Support of the visible edges by image edges. Shares are of samples or lengths, 0..1.
+struct EdgeEvidence {
+  float visible_px = 0;        // length of the edges that face the camera, are not hidden and lie in the left image
+  float inside = 0;            // share of the edges that lies in the left image
+  float edges = 0;             // how many are longer than min_edge_px
+  float support = 0;           // share of samples where both images show an edge
+  float chance = 0;            // the same share 6 and 10 px beside: what mere texture gives
+  float sharp = 0;             // share of samples with sharp support
+  float sharp_of_support = 0;  // share of the supported ones that are sharp
+  float spread_px = 0;         // standard deviation of the supporting offsets within an edge
+  float full_edges = 0;        // share of edges with support of more than four fifths
+  float weakest_edge = 0;      // lowest support of an edge
+  float distinct = 0;          // how much averaged edges stand out from what is beside them, in both images
+  float clear = 0;             // share of the length where they stand out by more than half
+  float dimmest_edge = 0;      // lowest distinctness of an edge
+  float overrun = 0;           // share of edge ends beyond which the image edge goes on: clutter has no corners there
 };
+
+// All that is known of a pose before it is scored.
+struct Evidence {
+  EdgeEvidence edges;
+  float hidden = 0;         // share of the visible edges' length before which something nearer stands
+  SurfaceEvidence surface;  // of the disparity map, inside the silhouette and beside it
+  float disparity_px = 0;   // of the object's edges, mean: how well depth can be told
+  float rms_px = 0;         // what the refinement left
+  float uncertainty = 0;    // standard deviation of the position by the refinement's covariance, over the diameter
+};
+
+inline constexpr std::size_t kEvidenceTerms = 22;
+using EvidenceTerms = std::array<float, kEvidenceTerms>;
+
+// The terms in a fixed order, as the score reads them, and their names in that order.
+EvidenceTerms TermsOf(const Evidence& evidence);
+const std::array<const char*, kEvidenceTerms>& EvidenceTermNames();
 
 struct VerifyInput {
   const RectifiedCamera& camera;
   const EdgeMap& left_edges;
   const EdgeMap& right_edges;
-  const NormalizedPlane& left;
-  const NormalizedPlane& right;
   const SmoothPlane& left_smooth;
   const SmoothPlane& right_smooth;
   const DisparityMap& disparity;

@@ -1,9 +1,6 @@
 #include "stages/selection.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include "base/portable_math.h"
 
 namespace wirepose {
 namespace {
@@ -26,16 +23,6 @@ bool IsDuplicate(const PreparedModel& model, const Pose& p, const Pose& q) {
 }
 
 }  // namespace
-
-float ScoreOf(const ScoreParams& params, const Evidence& evidence) {
-  const float length = std::max(1.0F, evidence.visible_px);
-  const float logit =
-      params.bias + params.edge_density * 100 * evidence.edges / length + params.log_length * Log(length / 300) +
-      params.contrast * evidence.contrast + params.distinct * evidence.distinct + params.overrun * evidence.overrun +
-      params.inside * evidence.inside + params.faces * evidence.faces + params.on * evidence.surface.on +
-      params.through * evidence.surface.through + params.drop * evidence.surface.drop;
-  return 1 / (1 + Exp(-std::clamp(logit, -30.0F, 30.0F)));
-}
 
 void SelectDetections(const SelectParams& params, const RectifiedCamera& camera, const EdgeMap& left,
                       std::span<const PreparedModel> models, std::span<const Candidate> candidates,

@@ -9,26 +9,7 @@
 
 namespace wirepose {
 
-// Score = logistic function of the evidence. One set of weights for all models and data, fitted to simulated kitchens
-// by tools/evaluation/fit_score.py, never to recorded test data; log_length is given, not fitted: evidence of equal
-// density counts more the longer it is (as in a-contrario detection), which scenes with few sizes of objects cannot
-// teach.
-struct ScoreParams {
-  float bias = -10.14F;
-  float edge_density = 0.33F;  // per log-likelihood unit and 100 px of visible edge
-  float log_length = 1.0F;     // per natural logarithm of visible edge length over 300 px
-  float contrast = 1.22F;      // per unit of contrast with the surroundings
-  float distinct = 1.72F;      // per unit of distinctness of the averaged edges
-  float overrun = -3.55F;      // per unit of overrun share
-  float inside = 2.10F;        // per share of the visible edges that lies in the image
-  float faces = 0.08F;         // per unit of face evidence
-  float on = 1.80F;            // per share of the surface that the scene's surface is
-  float through = -1.74F;      // per share of it that one sees through
-  float drop = 2.05F;          // per share of the outline behind which the scene falls back
-};
-
 struct SelectParams {
-  ScoreParams score;
   float min_score = 0.5F;    // lower ones are not reported
   float max_claimed = 0.5F;  // share of a candidate's supported edges that stronger detections may own
 };
@@ -40,7 +21,7 @@ struct Candidate {
   RefinedPose pose;
   Evidence evidence;
   FixedVector<SetMember, kMaxSetLines> members;  // the corresponding line set behind it
-  float score = 0;
+  float score = 0;                               // probability that the pose is right
 };
 
 struct BetterCandidate {
@@ -50,9 +31,6 @@ struct BetterCandidate {
   }
 };
 using Candidates = KeepBest<Candidate, kMaxVerified, BetterCandidate>;
-
-// Probability that the candidate is right.
-float ScoreOf(const ScoreParams& params, const Evidence& evidence);
 
 // Work space: which 4 x 4 px blocks of the left image belong to an accepted detection's edges.
 struct ClaimMap {

@@ -27,7 +27,7 @@ bool IsInside(const SurfaceMap& s, int i, int j) {
 void GatherSurfaceEvidence(const SurfaceEvidenceParams& params, const DisparityMap& scene, const SurfaceMap& surface,
                            SurfaceEvidence& out) {
   constexpr int kScale = SurfaceMap::kScale;
-  float on = 0, through = 0, before = 0, drop = 0, level = 0, beside_before = 0;
+  float on = 0, through = 0, drop = 0, level = 0, beside_before = 0;
   for (int j = surface.y0; j < surface.y1; ++j) {
     for (int i = surface.x0; i < surface.x1; ++i) {
       const float seen = scene.At(kScale * i, kScale * j);
@@ -36,7 +36,7 @@ void GatherSurfaceEvidence(const SurfaceEvidenceParams& params, const DisparityM
         if (!IsInside(surface, i, j)) continue;
         const float expected = surface.At(i, j);
         const float tolerance = std::max(params.tolerance_px, params.tolerance_share * expected);
-        (seen < expected - tolerance ? through : seen > expected + tolerance ? before : on) += 1;
+        if (seen <= expected + tolerance) (seen < expected - tolerance ? through : on) += 1;
         continue;
       }
       const float expected = Nearest(surface, i, j, 2);
@@ -45,9 +45,9 @@ void GatherSurfaceEvidence(const SurfaceEvidenceParams& params, const DisparityM
       (seen < expected - tolerance ? drop : seen > expected + tolerance ? beside_before : level) += 1;
     }
   }
-  const float inside = on + through + before + params.prior_cells;
+  const float seen = on + through + params.prior_cells;
   const float beside = drop + level + beside_before + params.prior_cells;
-  out = {on / inside, through / inside, before / inside, drop / beside, level / beside};
+  out = {on / seen, through / seen, drop / beside, level / beside};
 }
 
 }  // namespace wirepose

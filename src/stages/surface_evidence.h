@@ -14,12 +14,10 @@ struct SurfaceEvidenceParams {
   float prior_cells = 5;  // cells without a vote that every share is diluted with: few cells tell little
 };
 
-// Shares of the cells whose disparity is known, 0..1. What is hidden by something nearer votes as `before`, not
-// against.
+// Shares of the cells whose disparity is known, 0..1.
 struct SurfaceEvidence {
-  float on = 0;       // inside: the scene's surface is the model's
-  float through = 0;  // inside: the scene is farther, one sees through where the object should be
-  float before = 0;   // inside: something nearer stands there
+  float on = 0;       // of what is not hidden inside: the scene's surface is the model's
+  float through = 0;  // of the same: the scene is farther, one sees through where the object should be
   float drop = 0;     // around the silhouette: the scene falls back behind the object
   float level = 0;    // around the silhouette: the surface goes on, as on a picture of an object
 };

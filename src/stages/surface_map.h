@@ -19,6 +19,12 @@ struct SurfaceMap {
   std::array<float, std::size_t{kWidth} * kHeight> disparity;  // px of the full image; 0: not the object
 
   [[nodiscard]] float At(int i, int j) const { return disparity[static_cast<std::size_t>(j * kWidth + i)]; }
+
+  // Of the cell nearest to a pixel; 0 outside of the box.
+  [[nodiscard]] float AtPixel(int x, int y) const {
+    const int i = (x + kScale / 2) / kScale, j = (y + kScale / 2) / kScale;
+    return x >= 0 && y >= 0 && i >= x0 && j >= y0 && i < x1 && j < y1 ? At(i, j) : 0;
+  }
 };
 
 // Draws the faces that turn towards the camera; the nearest one wins. Faces that come closer than 5 cm are left out.

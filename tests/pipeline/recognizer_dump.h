@@ -70,10 +70,11 @@ class RecognizerDump {
   }
 
   std::string Candidates(std::span<const Candidate> candidates) {
-    Begin("candidates: model, order, score, edges, contrast, faces, overrun, rms, translation", candidates.size());
+    Begin("candidates: model, order, score, evidence, translation", candidates.size());
     for (const Candidate& c : candidates) {
       Members(c.model, ' ', c.order);
-      Numbers({c.score, c.evidence.edges, c.evidence.contrast, c.evidence.faces, c.evidence.overrun, c.pose.rms_px});
+      Numbers({c.score});
+      for (const float term : TermsOf(c.evidence)) Numbers({term});
       Numbers({c.pose.T_camera_model.t.x(), c.pose.T_camera_model.t.y(), c.pose.T_camera_model.t.z()});
       EndLine();
     }

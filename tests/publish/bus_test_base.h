@@ -43,10 +43,11 @@ class BusTest : public ::testing::Test {
   }
 
   // A subscriber to `topics`; once it has data, it says so.
-  std::unique_ptr<Process> Subscribe(const std::vector<std::string>& topics) {
+  std::unique_ptr<Process> Subscribe(const std::vector<std::string>& topics,
+                                     const std::vector<std::string>& environment = {}) {
     std::vector<std::string> command = {WIREPOSE_TEST_SUBSCRIBER, std::to_string(domain_.id())};
     command.insert(command.end(), topics.begin(), topics.end());
-    return std::make_unique<Process>(folder_, "subscriber" + std::to_string(++started_), command);
+    return std::make_unique<Process>(folder_, "subscriber" + std::to_string(++started_), command, environment);
   }
   // Publishes until it has data.
   bool WaitForData(const Process& subscriber, const FrameReport& report) {

@@ -84,7 +84,7 @@ class DiagnosticsTest : public ::testing::Test {
  protected:
   // Level of the status of that name, as the report makes it.
   int Level(const HealthReport& report, std::string_view name) {
-    FillMessage(report, *message_);
+    FillMessage(report, losses_.Update(report), *message_);
     for (std::uint32_t i = 0; i < message_->value.status._length; ++i) {
       const auto& status = message_->value.status._buffer[i];
       text_ = status.message;
@@ -103,6 +103,7 @@ class DiagnosticsTest : public ::testing::Test {
     return report;
   }
 
+  LossMonitor losses_;
   std::unique_ptr<DiagnosticsMessage> message_ = std::make_unique<DiagnosticsMessage>();
   std::string text_;
 };
@@ -124,11 +125,34 @@ TEST_F(DiagnosticsTest, TroubleRaisesTheLevelAndSaysWhy) {
   EXPECT_EQ(Level(report, "bus"), 1);
   EXPECT_NE(text_.find("pool"), std::string::npos);
   report = Good();
-  report.write_errors = 1;
-  EXPECT_EQ(Level(report, "bus"), 1);
-  report = Good();
   report.models.clear();
   EXPECT_EQ(Level(report, "models"), 1);
+}
+
+// Who was warned is told when it is over; the counters stay.
+TEST_F(DiagnosticsTest, LossesAreOverSomeTimeAfterTheLast) {
+  HealthReport report = Good();
+  std::uint64_t* const results = &report.results_dropped;
+  std::uint64_t* const messages = &report.write_errors;
+  for (std::uint64_t* const count : {results, messages}) {
+    const auto level_at = [&](std::uint64_t seconds) {
+      report.uptime_ns += seconds * 1'000'000'000;
+      return Level(report, "bus");
+    };
+    EXPECT_EQ(level_at(1), 0);
+    *count += 3;
+    EXPECT_EQ(level_at(1), 1);
+    EXPECT_NE(text_.find(count == results ? "dropped" : "refused"), std::string::npos) << text_;
+    EXPECT_EQ(level_at(29), 1);
+    EXPECT_EQ(level_at(1), 0) << "30 s after";
+    *count += 1;
+    EXPECT_EQ(level_at(1), 1) << "again";
+    EXPECT_EQ(level_at(30), 0);
+  }
+  report.lists.detections.dropped = 1;
+  EXPECT_EQ(Level(report, "recognition"), 1);
+  report.uptime_ns += 30'000'000'000;
+  EXPECT_EQ(Level(report, "recognition"), 0);
 }
 
 // --- Commands
@@ -214,7 +238,7 @@ TEST(MessageBounds, FullMessagesFitTheirSlots) {
   const auto diagnostics = std::make_unique<DiagnosticsMessage>();
   FillMessage(test::FullHealth(), test::LongText(), *health);
   health->value.lists._length = health->value.lists._maximum;
-  FillMessage(test::FullHealth(), *diagnostics);
+  FillMessage(test::FullHealth(), {true, true, true}, *diagnostics);
   diagnostics->value.status._length = diagnostics->value.status._maximum;
   for (std::uint32_t i = 0; i < kDiagnosticStatuses; ++i) {
     auto& status = diagnostics->value.status._buffer[i];

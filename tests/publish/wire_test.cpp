@@ -149,6 +149,7 @@ TEST_F(WireTest, TypeAndTopicAreThoseOfRos2) {
       {TopicId::kDetections, "rt/wirepose/detections", "vision_msgs::msg::dds_::Detection3DArray_"},
       {TopicId::kMarkers, "rt/wirepose/markers", "visualization_msgs::msg::dds_::MarkerArray_"},
       {TopicId::kDiagnostics, "rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_"},
+      {TopicId::kImage, "rt/wirepose/left/image_raw", "sensor_msgs::msg::dds_::Image_"},
   };
   for (const auto& [topic, name, type] : expected) {
     EXPECT_STREQ(Spec(topic).name, name);
@@ -196,6 +197,49 @@ TEST_F(WireTest, WhoComesLateGetsTheLastHealth) {
   EXPECT_STREQ(received->value.last_error, "frame 3: image damaged");
   ASSERT_EQ(received->value.models._length, 1u);
   EXPECT_EQ(received->value.models._buffer[0].checksum, 0xC0FFEE07U);
+}
+
+// What is only for the eye is gathered and sent only while somebody subscribes to it; each frame asks again.
+TEST_F(WireTest, MarkersAndImageAreWantedOnlyWhileSomebodyListens) {
+  const auto becomes = [&](bool markers, bool image) {
+    for (int i = 0; i < 500; ++i) {
+      publisher_->Publish(FrameReport{});
+      if (publisher_->SceneWanted() == markers && publisher_->ImageWanted() == image) return true;
+      dds_sleepfor(DDS_MSECS(10));
+    }
+    return false;
+  };
+  publisher_->Publish(FrameReport{});
+  dds_sleepfor(DDS_MSECS(50));
+  EXPECT_FALSE(publisher_->SceneWanted() || publisher_->ImageWanted()) << "nobody is there";
+  const dds_entity_t markers = MatchedReader(TopicId::kMarkers);
+  EXPECT_TRUE(becomes(true, false));
+  const dds_entity_t image = MatchedReader(TopicId::kImage);
+  EXPECT_TRUE(becomes(true, true));
+  dds_delete(markers);
+  EXPECT_TRUE(becomes(false, true));
+  dds_delete(image);
+  EXPECT_TRUE(becomes(false, false));
+}
+
+// Who watches /diagnostics sees that losses have stopped; the uptime of the reports is what counts.
+TEST_F(WireTest, DiagnosticsCalmDownAfterLosses) {
+  const dds_entity_t reader = MatchedReader(TopicId::kDiagnostics);
+  const auto received = std::make_unique<DiagnosticsMessage>();
+  const auto bus_level_at = [&](std::uint64_t seconds, std::uint64_t dropped) -> int {
+    HealthReport report;
+    report.uptime_ns = seconds * 1'000'000'000;
+    report.results_dropped = dropped;
+    publisher_->Publish(report);
+    Take(reader, &received->value);
+    return received->value.status._buffer[2].level;
+  };
+  EXPECT_EQ(bus_level_at(5, 0), 0);
+  EXPECT_STREQ(received->value.status._buffer[2].name, "wireposed: bus");
+  EXPECT_EQ(bus_level_at(6, 4), 1);
+  EXPECT_EQ(bus_level_at(35, 4), 1);
+  EXPECT_EQ(bus_level_at(36, 4), 0);
+  EXPECT_EQ(bus_level_at(37, 5), 1);
 }
 
 TEST_F(WireTest, ReportsArriveInOrder) {

@@ -103,7 +103,7 @@ TEST_F(RosDecodeTest, Diagnostics) {
   for (HealthReport report : {HealthReport{}, FullHealth()}) {
     // What the publisher fills in, as it stands now: one subscriber.
     report.events.subscribers = 1;
-    FillMessage(report, *message);
+    FillMessage(report, LossMonitor().Update(report), *message);
     Save(report, reader, "diagnostic_msgs/DiagnosticArray", RosJson(message->value));
   }
   Decode();

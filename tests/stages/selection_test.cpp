@@ -93,45 +93,6 @@ TEST_F(SelectionTest, OverflowKeepsTheBestAndCounts) {
   EXPECT_EQ(dropped_, 4U);
 }
 
-TEST(Score, IsAProbabilityThatGrowsWithEvidence) {
-  const ScoreParams params;
-  Evidence weak;
-  weak.visible_px = 700;
-  weak.edges = 20;
-  weak.inside = 1;
-  const float score = ScoreOf(params, weak);
-  const auto with = [&](float Evidence::*term, float value) {
-    Evidence e = weak;
-    e.*term = value;
-    return ScoreOf(params, e);
-  };
-  EXPECT_GT(with(&Evidence::edges, 120), score);
-  EXPECT_GT(with(&Evidence::faces, 6), score);
-  EXPECT_GT(with(&Evidence::contrast, 0.6F), score);
-  EXPECT_GT(with(&Evidence::distinct, 0.6F), score);
-  EXPECT_LT(with(&Evidence::overrun, 0.5F), score);
-  EXPECT_LT(with(&Evidence::inside, 0.5F), score);
-  const auto with_surface = [&](float SurfaceEvidence::*term) {
-    Evidence e = weak;
-    e.surface.*term = 0.8F;
-    return ScoreOf(params, e);
-  };
-  EXPECT_GT(with_surface(&SurfaceEvidence::on), score);
-  EXPECT_GT(with_surface(&SurfaceEvidence::drop), score);
-  EXPECT_LT(with_surface(&SurfaceEvidence::through), score);
-  EXPECT_EQ(with_surface(&SurfaceEvidence::before), score);
-  Random random(1);
-  for (int k = 0; k < 1000; ++k) {
-    Evidence e;
-    e.edges = static_cast<float>(1000 * testing::Gaussian(random));
-    e.faces = static_cast<float>(1000 * testing::Gaussian(random));
-    e.contrast = static_cast<float>(random.Uniform(-1, 1));
-    e.visible_px = static_cast<float>(random.Uniform(0, 3000));
-    const float any = ScoreOf(params, e);
-    ASSERT_TRUE(any >= 0 && any <= 1);
-  }
-}
-
 TEST(Order, IsStrictAndTotal) {
   Candidate a, b;
   a.score = 0.9F;

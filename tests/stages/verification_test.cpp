@@ -17,12 +17,14 @@ class VerificationTest : public ::testing::Test {
  protected:
   Evidence Gather(const RenderedScene& scene, const Pose& T) {
     Evidence evidence;
+    RefinedPose pose;
+    pose.T_camera_model = T;
+    pose.covariance *= 1e-6;
     ComputeDisparityMap({}, scene.camera.width, scene.camera.height, scene.left->normalized, scene.right->normalized,
                         *disparity_scratch_, *disparity_);
-    GatherEvidence({},
-                   {scene.camera, scene.left->map, scene.right->map, scene.left->normalized, scene.right->normalized,
-                    scene.left->smooth, scene.right->smooth, *disparity_},
-                   *model_, T, *scratch_, evidence);
+    GatherEvidence(
+        {}, {scene.camera, scene.left->map, scene.right->map, scene.left->smooth, scene.right->smooth, *disparity_},
+        *model_, pose, *scratch_, evidence);
     return evidence;
   }
   RenderedScene Show(const Pose& T, sim::Texture texture, std::uint64_t seed) {
@@ -39,44 +41,33 @@ TEST_F(VerificationTest, RightPoseBeatsShiftedOnes) {
   Random random(1);
   const Pose T = testing::GoodView(random, *model_);
   const RenderedScene scene = Show(T, sim::Texture::kLabel, 5);
-  const Evidence right = Gather(scene, T);
-  EXPECT_GT(right.edges, 0);
+  const EdgeEvidence right = Gather(scene, T).edges;
   EXPECT_GT(right.support, 0.7F);
+  EXPECT_GT(right.sharp, 0.6F);
   EXPECT_GT(right.inside, 0.99F);
-  EXPECT_GE(right.supported_edges, 6);
-  EXPECT_EQ(right.supported_faces, 3);
-  int beaten = 0;
-  const int count = Cases(60);
-  for (int k = 0; k < count; ++k) {
-    const Evidence wrong =
-        Gather(scene, testing::Shaken(random, T, random.Uniform(0.1, 0.5), random.Uniform(0.02, 0.08)));
-    EXPECT_LT(wrong.edges, right.edges);
-    if (wrong.edges + wrong.faces < right.edges + right.faces) ++beaten;
+  EXPECT_EQ(right.edges, 9);
+  EXPECT_GT(right.full_edges, 0.5F);
+  EXPECT_LT(right.spread_px, 0.5F);
+  for (int k = 0; k < Cases(60); ++k) {
+    const EdgeEvidence wrong =
+        Gather(scene, testing::Shaken(random, T, random.Uniform(0.1, 0.5), random.Uniform(0.02, 0.08))).edges;
+    EXPECT_LT(wrong.support, right.support);
+    EXPECT_LT(wrong.sharp, right.sharp - 0.2F);
+    EXPECT_LE(wrong.full_edges, right.full_edges);
+    EXPECT_LE(wrong.weakest_edge, right.weakest_edge);
   }
-  EXPECT_EQ(beaten, count);
 }
 
-// Scaled about the camera centre the edges stay where they are in the left image; only the faces'
-// depth tells.
-TEST_F(VerificationTest, TexturedFacesVoteForTheRightDepth) {
+// Support at every offset within 2.2 px counts, sharp support only at the edge itself.
+TEST_F(VerificationTest, AShiftedPoseLosesSharpnessFirst) {
   Random random(2);
   const Pose T = testing::GoodView(random, *model_);
-  const RenderedScene scene = Show(T, sim::Texture::kLabel, 6);
-  const float right = Gather(scene, T).faces;
-  EXPECT_GT(right, 1);
-  for (const double shift : {-0.12, -0.08, 0.08, 0.12, 0.2}) {
-    Pose moved = T;
-    moved.t *= 1 + shift;
-    EXPECT_LT(Gather(scene, moved).faces, right - 1) << shift;
-  }
-}
-
-TEST_F(VerificationTest, BlankFacesSayLess) {
-  Random random(3);
-  const Pose T = testing::GoodView(random, *model_);
-  const float textured = Gather(Show(T, sim::Texture::kLabel, 7), T).faces;
-  const float blank = Gather(Show(T, sim::Texture::kPlain, 7), T).faces;
-  EXPECT_LT(blank, textured);
+  const RenderedScene scene = Show(T, sim::Texture::kPlain, 6);
+  Pose moved = T;
+  moved.t += Vector3d(1, 1, 0) * 1.2 * T.t.z() / scene.camera.f;
+  const EdgeEvidence right = Gather(scene, T).edges, shifted = Gather(scene, moved).edges;
+  EXPECT_GT(shifted.support, right.support - 0.15F);
+  EXPECT_LT(shifted.sharp, 0.6F * right.sharp);
 }
 
 // Slid along its own long edges the model's corners lie where the image's edges go on.
@@ -84,10 +75,10 @@ TEST_F(VerificationTest, OverrunCornersSpeakAgainst) {
   Random random(4);
   const Pose T = testing::GoodView(random, *model_);
   const RenderedScene scene = Show(T, sim::Texture::kPlain, 8);
-  const float right = Gather(scene, T).overrun;
+  const float right = Gather(scene, T).edges.overrun;
   EXPECT_LT(right, 0.35F);
   for (const double shift : {-0.06, 0.06}) {
-    EXPECT_GT(Gather(scene, T * Pose{Matrix3d::Identity(), {shift, 0, 0}}).overrun, right) << shift;
+    EXPECT_GT(Gather(scene, T * Pose{Matrix3d::Identity(), {shift, 0, 0}}).edges.overrun, right) << shift;
   }
 }
 
@@ -96,12 +87,13 @@ TEST_F(VerificationTest, ContrastWithTheSurroundings) {
   Random random(8);
   const Pose T = testing::GoodView(random, *model_);
   const RenderedScene scene = Show(T, sim::Texture::kLabel, 9);
-  EXPECT_GT(Gather(scene, T).contrast, 0.3F);
+  const auto contrast = [](const Evidence& e) { return e.edges.support - e.edges.chance; };
+  EXPECT_GT(contrast(Gather(scene, T)), 0.3F);
   double sum = 0;
   const int count = Cases(50);
   for (int k = 0; k < count; ++k) {
     sum += static_cast<double>(
-        Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1), random.Uniform(0.03, 0.1))).contrast);
+        contrast(Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1), random.Uniform(0.03, 0.1)))));
   }
   EXPECT_LT(sum / count, 0.2);
 }
@@ -111,13 +103,13 @@ TEST_F(VerificationTest, DistinctEdges) {
   Random random(9);
   const Pose T = testing::GoodView(random, *model_);
   const RenderedScene scene = Show(T, sim::Texture::kPlain, 10);
-  const float right = Gather(scene, T).distinct;
+  const float right = Gather(scene, T).edges.distinct;
   EXPECT_GT(right, 0.5F);
   int beaten = 0;
   const int count = Cases(50);
   for (int k = 0; k < count; ++k) {
-    const Evidence wrong =
-        Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1), random.Uniform(0.03, 0.1)));
+    const EdgeEvidence wrong =
+        Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1), random.Uniform(0.03, 0.1))).edges;
     EXPECT_TRUE(wrong.distinct >= 0 && wrong.distinct <= 1);
     if (wrong.distinct < right) ++beaten;
   }
@@ -145,10 +137,10 @@ TEST_F(VerificationTest, NothingInTheImagesSpeaksAgainst) {
   scene.left = testing::FindAll(flat);
   scene.right = testing::FindAll(flat);
   const Evidence none = Gather(scene, testing::GoodView(random, *model_));
-  EXPECT_LT(none.edges, 0);
-  EXPECT_EQ(none.support, 0);
-  EXPECT_EQ(none.supported_edges, 0);
-  EXPECT_LE(none.faces, 0.01F);
+  EXPECT_GT(none.edges.visible_px, 100);
+  EXPECT_EQ(none.edges.support, 0);
+  EXPECT_EQ(none.edges.full_edges, 0);
+  EXPECT_EQ(none.edges.clear, 0);
 }
 
 // What lies outside of the images abstains.
@@ -162,11 +154,37 @@ TEST_F(VerificationTest, OutsideAbstains) {
   Pose T = testing::GoodView(random, *model_);
   T.t.x() += 3;
   const Evidence outside = Gather(scene, T);
-  EXPECT_EQ(outside.edges, 0);
-  EXPECT_EQ(outside.faces, 0);
-  EXPECT_EQ(outside.overrun, 0);
-  EXPECT_EQ(outside.inside, 0);
-  EXPECT_EQ(outside.visible_px, 0);
+  EXPECT_EQ(outside.edges.edges, 0);
+  EXPECT_EQ(outside.edges.support, 0);
+  EXPECT_EQ(outside.edges.overrun, 0);
+  EXPECT_EQ(outside.edges.inside, 0);
+  EXPECT_EQ(outside.edges.visible_px, 0);
+}
+
+// A board before the object's left half: what it hides abstains, what is beside it keeps its support.
+TEST_F(VerificationTest, WhatIsHiddenAbstains) {
+  Random random(11);
+  const Pose T = testing::GoodView(random, *model_);
+  const RenderedScene scene = Show(T, sim::Texture::kLabel, 12);
+  const Evidence whole = Gather(scene, T);
+  EXPECT_LT(whole.hidden, 0.1F);
+  const auto cover = static_cast<std::uint16_t>(100 * DisparityMap::kOne);
+  float centre = 0;
+  for (const EdgeSample& s : scratch_->samples) centre += s.left.x() / static_cast<float>(scratch_->samples.size());
+  for (int y = 0; y < disparity_->height; ++y) {
+    for (int x = 0; x < static_cast<int>(centre) / DisparityMap::kScale; ++x) {
+      disparity_->disparity[static_cast<std::size_t>(y * DisparityMap::kMaxWidth + x)] = cover;
+    }
+  }
+  RenderSurface(scene.camera, *model_, T, scratch_->surface);
+  SampleVisibleEdges({}, scene.camera, *model_, T, scratch_->front, scratch_->samples);
+  const float hidden = DropOccluded({}, *disparity_, scratch_->surface, scratch_->samples);
+  EXPECT_GT(hidden, 0.25F);
+  EXPECT_LT(hidden, 0.75F);
+  // At acute corners no place beside the edge is the object's: such samples stay.
+  int left_over = 0;
+  for (const EdgeSample& s : scratch_->samples) left_over += s.left.x() < centre - 12 ? 1 : 0;
+  EXPECT_LT(left_over, static_cast<int>(scratch_->samples.size()) / 10);
 }
 
 // Any pose at all: numbers stay numbers, shares stay shares.
@@ -181,12 +199,13 @@ TEST_F(VerificationTest, AnyPoseGivesFiniteEvidence) {
     const Pose T{testing::AnyRotation(random),
                  Vector3d(random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-0.5, 3))};
     const Evidence e = Gather(scene, T);
-    EXPECT_TRUE(std::isfinite(e.edges) && std::isfinite(e.faces) && std::isfinite(e.contrast));
-    EXPECT_TRUE(e.support >= 0 && e.support <= 1.001F && e.inside >= 0 && e.inside <= 1.001F);
-    EXPECT_TRUE(e.overrun >= 0 && e.overrun <= 1);
-    EXPECT_LE(e.supported_faces, 6);
-    EXPECT_TRUE(e.distinct >= 0 && e.distinct <= 1);
-    EXPECT_TRUE(e.surface.on >= 0 && e.surface.on + e.surface.through + e.surface.before <= 1.001F);
+    for (const float term : TermsOf(e)) EXPECT_TRUE(std::isfinite(term));
+    const EdgeEvidence& edges = e.edges;
+    for (const float share : {edges.inside, edges.support, edges.chance, edges.sharp, edges.sharp_of_support,
+                              edges.full_edges, edges.weakest_edge, edges.distinct, edges.clear, edges.dimmest_edge,
+                              edges.overrun, e.hidden, e.surface.on, e.surface.on + e.surface.through}) {
+      EXPECT_TRUE(share >= 0 && share <= 1.001F) << share;
+    }
   }
 }
 

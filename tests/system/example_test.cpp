@@ -1,17 +1,43 @@
-// The example for subscribers, built as the project of its own that it is, listens to and commands the running program.
+// The examples as somebody finds them who has installed Wirepose and has no source tree.
 #include <gtest/gtest.h>
+
+#include <sstream>
 
 #include "robot_test_base.h"
 
 namespace wirepose::test {
 namespace {
 
-TEST_F(RobotTest, ExampleSubscriberBuildsListensAndCommands) {
-  const std::string build = (folder_ / "example").string();
-  Process configure(folder_, "configure", {WIREPOSE_CMAKE, "-S", WIREPOSE_EXAMPLE, "-B", build});
-  ASSERT_EQ(configure.Wait(std::chrono::seconds(60)), 0) << configure.Out() << configure.Err();
-  Process compile(folder_, "compile", {WIREPOSE_CMAKE, "--build", build});
-  ASSERT_EQ(compile.Wait(std::chrono::seconds(120)), 0) << compile.Out() << compile.Err();
+namespace fs = std::filesystem;
+
+class ExampleTest : public RobotTest {
+ protected:
+  // The part for developers, under a prefix of its own.
+  void Install() { RunCmake("install", {"--install", WIREPOSE_BUILD, "--prefix", prefix(), "--component", "dev"}); }
+  // Configures and builds the installed example.
+  void Build() {
+    RunCmake("configure", {"-S", prefix() + "/share/wirepose/examples/cpp_subscriber", "-B", build(),
+                           "-DCMAKE_PREFIX_PATH=" + prefix()});
+    RunCmake("compile", {"--build", build()});
+  }
+  void RunCmake(const std::string& name, const std::vector<std::string>& arguments) {
+    std::vector<std::string> command = {WIREPOSE_CMAKE};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    Process process(folder_, name, command);
+    ASSERT_EQ(process.Wait(std::chrono::seconds(120)), 0) << process.Out() << process.Err();
+  }
+  [[nodiscard]] std::string prefix() const { return (folder_ / "prefix").string(); }
+  [[nodiscard]] std::string build() const { return (folder_ / "example").string(); }
+};
+
+TEST_F(ExampleTest, SubscriberBuildsAgainstTheInstalledPackageListensAndCommands) {
+  ASSERT_NO_FATAL_FAILURE(Install());
+  ASSERT_NO_FATAL_FAILURE(Build());
+  std::ostringstream cache;
+  cache << std::ifstream(fs::path(build()) / "CMakeCache.txt").rdbuf();
+  const std::string found = cache.str();
+  EXPECT_NE(found.find("Wirepose_DIR:PATH=" + prefix() + "/"), std::string::npos) << "another Wirepose was used";
+  EXPECT_EQ(found.find(WIREPOSE_SOURCE), std::string::npos) << "the example needs the source tree";
 
   WriteDataset(3);
   Process robot(folder_, "robot", Robot(LoopingConfig()));
@@ -21,10 +47,10 @@ TEST_F(RobotTest, ExampleSubscriberBuildsListensAndCommands) {
       "</Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</"
       "ParticipantIndex>"
       "<Peers><Peer Address=\"127.0.0.1\"/></Peers></Discovery></Domain></CycloneDDS>"};
-  Process good(folder_, "good", {build + "/wirepose_subscriber", "3", "1"}, environment);
+  Process good(folder_, "good", {build() + "/wirepose_subscriber", "3", "1"}, environment);
   EXPECT_EQ(good.Wait(), 0) << good.Err() << robot.Err();
   EXPECT_EQ(good.Out().rfind("select 1: accepted\nframe ", 0), 0u) << good.Out();
-  Process refused(folder_, "refused", {build + "/wirepose_subscriber", "3", "9"}, environment);
+  Process refused(folder_, "refused", {build() + "/wirepose_subscriber", "3", "9"}, environment);
   EXPECT_EQ(refused.Wait(), 1);
   EXPECT_NE(refused.Out().find("select 9: refused: no model file has the id 9"), std::string::npos) << refused.Out();
 }

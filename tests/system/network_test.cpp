@@ -98,9 +98,12 @@ TEST_F(NetworkTest, LongLossAndACutAreSurvived) {
   const double resumed_s = std::chrono::duration<double>(Clock::now() - mended).count();
   std::this_thread::sleep_for(seconds(2));
   const Json after = LastLine(*health);
-  std::printf("%d of 150 frames through 20 %% loss; data again %.2f s after a cut of 12 s; pool at most %u KiB\n",
-              through_loss, resumed_s, after["pool"]["high_water_bytes"].get<unsigned>() >> 10);
+  const auto pool_kib = [](const Json& message, const char* key) { return message["pool"][key].get<unsigned>() >> 10; };
+  std::printf("%d of 150 frames through 20 %% loss; data again %.2f s after a cut of 12 s\n", through_loss, resumed_s);
+  std::printf("pool: %u KiB before the cut, %u after, %u at most\n", pool_kib(before, "used_bytes"),
+              pool_kib(after, "used_bytes"), pool_kib(after, "high_water_bytes"));
   EXPECT_LT(resumed_s, 2);
+  EXPECT_LE(pool_kib(after, "used_bytes"), pool_kib(before, "used_bytes") + 40) << "the peer's second life costs more";
 
   const auto frames = [](const Json& message) { return message["frames"]["good"].get<int>(); };
   const double up_s = 1e-9 * (after["uptime_ns"].get<double>() - before["uptime_ns"].get<double>());

@@ -49,6 +49,10 @@ TEST_F(WireposedTest, SubscriberInAnotherProcessGetsEveryTopic) {
   ASSERT_EQ(health.back()["models"].size(), 1u);
   EXPECT_EQ(health.back()["models"][0]["name"], "parcel_box");
   EXPECT_NE(health.back()["models"][0]["checksum"], 0);
+  const Json& pool = health.back()["pool"];
+  EXPECT_GT(pool["high_water_bytes"], 100 << 10) << "DDS works in the static pool, and health says how much of it";
+  EXPECT_GE(pool["high_water_bytes"], pool["used_bytes"]);
+  EXPECT_NEAR(pool["capacity_bytes"].get<double>(), 1 << 20, 100);
   EXPECT_EQ(Messages(ros, "detections").at(0)["header"]["frame_id"], "test_optical");
 }
 
@@ -65,6 +69,42 @@ TEST_F(WireposedTest, TerminationIsCleanAndIsTheLastThingHealthSays) {
   EXPECT_EQ(watch.Wait(), 1) << "silence after the end";
   ASSERT_FALSE(Messages(watch, "health").empty()) << watch.Err();
   EXPECT_EQ(Messages(watch, "health").back()["state"], "stopped");
+}
+
+// What a person at the live table is told of the bus: broken promises, a program that died, its successor.
+TEST_F(WireposedTest, WatchTellsMissedDeadlinesAndLostLiveliness) {
+  WriteDataset(2);
+  const std::string config = WriteConfig(
+      "camera:\n  backend: replay\n  replay: { data_set: data, loop: true, frame_rate_hz: 25 }\n"
+      "dds:\n  domain: " +
+      domain_ + "\n  loopback: true\n  topics: { recognition: { deadline_ms: 300 } }\nmodels: [parcel_box.wpm]\n");
+  // Silence for 2 s instead of 10 is death.
+  const std::vector<std::string> lease = {
+      "CYCLONEDDS_URI=<CycloneDDS><Domain><Discovery><LeaseDuration>2 s</LeaseDuration></Discovery></Domain>"
+      "</CycloneDDS>"};
+  auto robot = std::make_unique<Process>(folder_, "robot", Robot(config), lease);
+  // On a terminal.
+  Process watch(folder_, "watch",
+                {"/usr/bin/script", "-qfec", WIREPOSE_PROGRAM " watch --deadline 300 --loopback --domain " + domain_,
+                 "/dev/null"});
+  // Is it there, in the newest picture that says `before`, below that? Notes stay for a while, the newest at the
+  // bottom.
+  const auto told = [&](const std::string& text, const std::string& before = "") {
+    for (int i = 0; i < 1500; ++i) {
+      const std::string out = watch.Out();
+      const std::size_t at = before.empty() ? 0 : out.rfind(before);
+      if (at != std::string::npos && out.find(text, at) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  };
+  ASSERT_TRUE(told("a publisher is there")) << watch.Out() << robot->Err();
+  robot->Signal(SIGSTOP);
+  EXPECT_TRUE(told("deadlines missed"));
+  robot->Signal(SIGKILL);
+  EXPECT_TRUE(told("the publisher is gone"));
+  robot = std::make_unique<Process>(folder_, "successor", Robot(config), lease);
+  EXPECT_TRUE(told("a publisher is there", "the publisher is gone")) << robot->Err();
 }
 
 TEST_F(WireposedTest, InterruptEndsItToo) {

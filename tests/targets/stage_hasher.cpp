@@ -35,6 +35,14 @@ void HashOrdered(const List& list, Digest& digest, const HashItem& hash_item) {
   for (const auto& item : list) hash_item(item, digest);
 }
 
+void HashDisparityMap(const DisparityMap& map, Digest& digest) {
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      digest.Add(map.disparity[static_cast<std::size_t>(y * DisparityMap::kMaxWidth + x)]);
+    }
+  }
+}
+
 }  // namespace
 
 void StageHasher::DoStageDone(Stage stage) {
@@ -49,6 +57,7 @@ void StageHasher::DoStageDone(Stage stage) {
       HashOrdered(recognizer_.right_segments(), digest, HashSegment);
       return;
     case Stage::kStereoLines:
+      HashDisparityMap(recognizer_.disparity_map(), digest);
       return HashOrdered(recognizer_.lines(), digest, HashLine);
     case Stage::kLineSets:
       return HashOrdered(recognizer_.line_sets().pairs, digest, HashPair);
@@ -84,9 +93,7 @@ void StageHasher::HashCandidates(Digest& digest) const {
   HashUnordered(recognizer_.candidates(), digest, [](const Candidate& c, Digest& d) {
     d.Add(c.model, c.order, c.score);
     d.Add(c.pose.T_camera_model, c.pose.covariance, c.pose.rms_px, c.pose.inliers, c.pose.ok);
-    const Evidence& e = c.evidence;
-    d.Add(e.edges, e.contrast, e.faces, e.overrun, e.support, e.inside, e.visible_px, e.supported_edges,
-          e.supported_faces);
+    for (const float term : TermsOf(c.evidence)) d.Add(term);
     for (const SetMember& m : c.members) d.Add(m.line, m.edge);
   });
 }

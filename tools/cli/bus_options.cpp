@@ -40,6 +40,8 @@ BusConfig BusConfigOf(const BusOptions& options) {
   config.domain = options.domain;
   config.loopback = options.loopback;
   for (TopicSettings& topic : config.topics) topic.reliable = !options.best_effort;
+  config.topics[static_cast<std::size_t>(TopicId::kRecognition)].deadline =
+      std::chrono::milliseconds(options.deadline_ms);
   for (const std::string& text : options.names) {
     const std::size_t equals = text.find('=');
     bool known = false;

@@ -14,6 +14,7 @@ struct BusOptions {
   std::uint32_t domain = 0;
   bool loopback = false;
   bool best_effort = false;
+  unsigned deadline_ms = 0;        // asked of wirepose/recognition; 0: none
   std::vector<std::string> names;  // KEY=NAME
   std::string security;            // a participant's folder; empty: none
 };

@@ -36,6 +36,7 @@ using Clock = std::chrono::steady_clock;
 // A person or a test reads this: waking 200 times a second is soon enough and needs no wait set.
 constexpr dds_duration_t kPause = DDS_MSECS(5);
 constexpr std::chrono::milliseconds kRedraw{200};
+constexpr char kAskLess[] = "try --best-effort, and no --deadline below that of dds.topics";
 
 LiveTable::Time Now() { return std::chrono::system_clock::now().time_since_epoch(); }
 
@@ -102,7 +103,7 @@ std::vector<std::unique_ptr<Printer>> Subscribe(const Bus& bus, const std::strin
 [[noreturn]] void FailForSilence(const WatchOptions& options, bool incompatible) {
   throw WorkFailed(fmt::format("nothing arrived for {} s on {}; {}", options.timeout_s, Where(options.bus),
                                incompatible
-                                   ? "wireposed offers less than was asked for: try --best-effort"
+                                   ? fmt::format("wireposed offers less than was asked for: {}", kAskLess)
                                    : "is wireposed running with the same domain, loopback setting and topic names?"));
 }
 
@@ -144,7 +145,7 @@ void NoteEvents(const SubscriptionEvents& events, LiveTable& table) {
     table.Note(events.publishers > 0 ? "a publisher is there" : "the publisher is gone", Now());
   }
   if (events.deadlines_missed > 0) table.Note(fmt::format("{} deadlines missed", events.deadlines_missed), Now());
-  if (events.incompatible) table.Note("the publisher offers less than was asked for: try --best-effort", Now());
+  if (events.incompatible) table.Note(fmt::format("the publisher offers less than was asked for: {}", kAskLess), Now());
 }
 
 // Draws over itself until interrupted. Silence is shown, not an error: a robot may start later.
@@ -199,6 +200,9 @@ void AddWatchCommand(CLI::App& app) {
   command->add_option("--timeout", options->timeout_s, "fail after that many seconds without a message; 0: never")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  command->add_option("--deadline", options->bus.deadline_ms,
+                      "live table: tell when no recognition comes for that many ms; wireposed must promise as much "
+                      "(deadline_ms of dds.topics)");
   AddBusOptions(*command, options->bus);
   command->callback([options] { Watch(*options); });
 }

@@ -1,70 +1,177 @@
 #!/usr/bin/python3
-"""Fits the weights of ScoreParams (src/stages/selection.h) to candidates of simulated scenes.
+"""Fits the score (src/stages/score.h) to candidates of simulated scenes and writes src/stages/score_table.cpp.
 
-  fit_score.py CANDIDATES.csv[:WEIGHT]...      files of `wirepose eval --candidates`, and how much a row counts (1)
+  fit_score.py CANDIDATES.csv[:WEIGHT]... [--table FILE]
 
-Right: within 0.1 diameters of a true instance. Regularised logistic regression (Newton's method); prints the
-aggregates to paste into ScoreParams and a reliability table from 5-fold cross validation by scene.
+The files come from `wirepose eval --candidates`; WEIGHT says how much a row of a file counts (1). Right is a pose
+within 0.1 diameters of a true instance. Gradient boosted trees of fixed depth (Friedman 2001; second order leaves as in
+Chen & Guestrin 2016) under monotonicity constraints where a term's direction is known. Prints a reliability table from
+5-fold cross validation by scene. Copies of a scene must keep its number, so that they fall into one fold.
 """
+import argparse
 import csv
-import sys
+import pathlib
 
 import numpy as np
 
-COLUMNS = ['contrast', 'distinct', 'overrun', 'inside', 'faces', 'on', 'through', 'drop']
-NAMES = ['bias', 'edge_density'] + COLUMNS
-LOG_LENGTH = 1.0  # given, see ScoreParams
+DEPTH = 4
+ROUNDS = 120
+RATE = 0.1
+BINS = 24
+RIDGE = 3.0
+RISING = {'visible_px', 'inside', 'support', 'sharp', 'sharp_of_support', 'full_edges', 'weakest_edge', 'distinct',
+          'clear', 'dimmest_edge', 'on', 'drop'}
+FALLING = {'chance', 'spread_px', 'overrun', 'hidden', 'through', 'level', 'rms_px', 'uncertainty'}
+FIRST, LAST = 'visible_px', 'uncertainty'  # columns of the terms, in the order of EvidenceTerms
+TABLE = pathlib.Path(__file__).resolve().parents[2] / 'src/stages/score_table.cpp'
 
 
-def features(row):
-    length = max(1.0, float(row['visible_px']))
-    return [1.0, 100 * float(row['edges']) / length] + [float(row[name]) for name in COLUMNS]
+class Data:
+    def __init__(self, arguments):
+        rows = []
+        for argument in arguments:
+            path, _, weight = argument.partition(':')
+            with open(path, newline='') as file:
+                rows += [(float(weight or 1), row) for row in csv.DictReader(file)]
+        if not rows:
+            raise SystemExit('fit_score.py: no candidates; name CSV files of `wirepose eval --candidates`')
+        columns = list(rows[0][1])
+        self.names = columns[columns.index(FIRST):columns.index(LAST) + 1]
+        self.terms = np.array([[float(row[name]) for name in self.names] for _, row in rows])
+        self.right = np.array([float(row['error_d']) < 0.1 for _, row in rows], float)
+        self.weight = np.array([weight for weight, _ in rows])
+        self.fold = np.array([int(row['scene_id']) % 5 for _, row in rows])
 
 
-def given(row):
-    return LOG_LENGTH * np.log(max(1.0, float(row['visible_px'])) / 300)
+class Tree:
+    """A complete tree: splits in heap order as (term, threshold), then leaves."""
+
+    def __init__(self):
+        self.splits = [(0, np.inf)] * (2**DEPTH - 1)
+        self.leaves = [0.0] * 2**DEPTH
+
+    def predict(self, terms):
+        node = np.zeros(len(terms), int)
+        split_term = np.array([s[0] for s in self.splits])
+        threshold = np.array([s[1] for s in self.splits])
+        for _ in range(DEPTH):
+            above = terms[np.arange(len(terms)), split_term[node]] > threshold[node]
+            node = 2 * node + np.where(above, 2, 1)
+        return np.array(self.leaves)[node - len(self.splits)]
 
 
-def fit(x, y, offset, weight, ridge=1.0):
-    penalty = ridge * np.diag([0.0] + [1.0] * (x.shape[1] - 1))
-    w = np.zeros(x.shape[1])
-    for _ in range(100):
-        p = 1 / (1 + np.exp(-x @ w - offset))
-        step = np.linalg.solve((x * (weight * p * (1 - p))[:, None]).T @ x + penalty + 1e-9 * np.eye(len(w)),
-                               x.T @ (weight * (y - p)) - penalty @ w)
-        w += step
-        if np.abs(step).max() < 1e-9:
-            break
-    return w
+class Booster:
+    def __init__(self, names):
+        self.sign = np.array([(n in RISING) - (n in FALLING) for n in names])
+        self.trees = []
+        self.bias = 0.0
+
+    def fit(self, terms, right, weight):
+        quantiles = np.linspace(0, 1, BINS + 1)[1:-1]
+        self.cuts = [np.unique(np.quantile(column, quantiles).astype(np.float32)) for column in terms.T]
+        self.bins = np.stack([np.searchsorted(c, column) for c, column in zip(self.cuts, terms.T)], 1)
+        self.bias = np.log((weight * right).sum() / (weight * (1 - right)).sum())
+        log_odds = np.full(len(right), self.bias)
+        for _ in range(ROUNDS):
+            p = 1 / (1 + np.exp(-log_odds))
+            self.gradient, self.curvature = weight * (right - p), weight * p * (1 - p)
+            tree = Tree()
+            self.grow(tree, 0, np.arange(len(right)), -np.inf, np.inf)
+            self.trees.append(tree)
+            log_odds += tree.predict(terms)
+
+    def predict(self, terms):
+        return self.bias + sum(tree.predict(terms) for tree in self.trees)
+
+    def grow(self, tree, node, rows, low, high):
+        """Splits where it gains most; values of the children keep the order that the term's direction asks for."""
+        g, h = self.gradient[rows].sum(), self.curvature[rows].sum()
+        value = np.clip(g / (h + RIDGE), low, high)
+        best = (1e-4, None)
+        if node < len(tree.splits):
+            for term in range(len(self.cuts)):
+                best = max(best, self.best_cut(term, rows, g, h, value, low, high), key=lambda b: b[0])
+        else:
+            tree.leaves[node - len(tree.splits)] = RATE * value
+            return
+        if best[1] is None:  # everything goes left
+            self.grow(tree, 2 * node + 1, rows, low, high)
+            return
+        _, (term, cut, left, right) = best
+        tree.splits[node] = (term, float(self.cuts[term][cut]))
+        below = self.bins[rows, term] <= cut
+        middle = (left + right) / 2
+        bounds = {0: (low, high, low, high), 1: (low, middle, middle, high), -1: (middle, high, low, middle)}
+        a, b, c, d = bounds[int(self.sign[term])]
+        self.grow(tree, 2 * node + 1, rows[below], a, b)
+        self.grow(tree, 2 * node + 2, rows[~below], c, d)
+
+    def best_cut(self, term, rows, g, h, value, low, high):
+        count = len(self.cuts[term]) + 1
+        bins = self.bins[rows, term]
+        gl = np.bincount(bins, self.gradient[rows], count).cumsum()[:-1]
+        hl = np.bincount(bins, self.curvature[rows], count).cumsum()[:-1]
+        if len(gl) == 0:
+            return (0, None)
+        left = np.clip(gl / (hl + RIDGE), low, high)
+        right = np.clip((g - gl) / (h - hl + RIDGE), low, high)
+
+        def gain_of(gradient, curvature, v):
+            return gradient * v - 0.5 * (curvature + RIDGE) * v * v
+        gain = gain_of(gl, hl, left) + gain_of(g - gl, h - hl, right) - gain_of(g, h, value)
+        gain = np.where((right - left) * self.sign[term] < 0, 0, gain)
+        k = int(gain.argmax())
+        return (gain[k], (term, k, left[k], right[k]))
+
+
+def number(value):
+    text = f'{np.float32(min(value, 1e30)):.8g}'
+    return (text if '.' in text or 'e' in text else text + '.') + 'F'
+
+
+def table(booster):
+    lines = ['// Written by tools/evaluation/fit_score.py; do not edit.', '#include "stages/score.h"', '',
+             'namespace wirepose {', 'namespace {', '', '// clang-format off',
+             f'constexpr std::array<ScoreTree, {len(booster.trees)}> kTrees = {{{{']
+    for tree in booster.trees:
+        splits = ', '.join(f'{{{term}, {number(threshold)}}}' for term, threshold in tree.splits)
+        leaves = ', '.join(number(leaf) for leaf in tree.leaves)
+        lines.append(f'  {{{{{{{splits}}}}}, {{{leaves}}}}},')
+    lines += ['}};', '// clang-format on', '', '}  // namespace', '', 'const ScoreTable& DefaultScoreTable() {',
+              f'  static constexpr ScoreTable kTable{{{number(booster.bias)}, kTrees}};', '  return kTable;', '}', '',
+              '}  // namespace wirepose', '']
+    return '\n'.join(lines)
+
+
+def reliability(data):
+    p = np.zeros(len(data.right))
+    for k in range(5):
+        held = data.fold == k
+        booster = Booster(data.names)
+        booster.fit(data.terms[~held], data.right[~held], data.weight[~held])
+        p[held] = 1 / (1 + np.exp(-booster.predict(data.terms[held])))
+    loss = -(data.weight * np.log(np.where(data.right > 0, p, 1 - p))).sum() / data.weight.sum()
+    print(f'cross validation: mean log loss {loss:.4f}\nscore       n  right')
+    for low in np.arange(0, 1, 0.1):
+        inside = (p >= low) & (p < low + 0.1 + 1e-9)
+        n = data.weight[inside].sum()
+        if n > 0:
+            mean = [(data.weight * v)[inside].sum() / n for v in (data.right, p)]
+            print(f'{low:.1f}-{low + 0.1:.1f} {n:6.0f}  {mean[0]:.2f}  (mean score {mean[1]:.2f})')
 
 
 def main():
-    rows = []
-    for argument in sys.argv[1:]:
-        path, _, weight = argument.partition(':')
-        rows += [(float(weight or 1), row) for row in csv.DictReader(open(path, newline=''))]
-    if not rows:
-        sys.exit('fit_score.py: no candidates; name CSV files of `wirepose eval --candidates`')
-    x = np.array([features(row) for _, row in rows])
-    y = np.array([float(row['error_d']) < 0.1 for _, row in rows], float)
-    offset = np.array([given(row) for _, row in rows])
-    weight = np.array([weight for weight, _ in rows])
-    fold = np.array([int(row['scene_id']) % 5 for _, row in rows])
-    w = fit(x, y, offset, weight)
-    print(f'{len(y)} candidates, {int(y.sum())} right')
-    for name, value in zip(NAMES, w):
-        print(f'  float {name} = {value:.3f}F;')
-    p = np.zeros(len(y))
-    for k in range(5):
-        held, used = fold == k, fold != k
-        p[held] = 1 / (1 + np.exp(-x[held] @ fit(x[used], y[used], offset[used], weight[used]) - offset[held]))
-    print('score       n  right')
-    for low in np.arange(0, 1, 0.1):
-        inside = (p >= low) & (p < low + 0.1 + 1e-9)
-        if inside.any():
-            n = weight[inside].sum()
-            print(f'{low:.1f}-{low + 0.1:.1f} {n:6.0f}  {(weight * y)[inside].sum() / n:.2f}  '
-                  f'(mean score {(weight * p)[inside].sum() / n:.2f})')
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('candidates', nargs='+', metavar='CANDIDATES.csv[:WEIGHT]')
+    parser.add_argument('--table', type=pathlib.Path, default=TABLE)
+    args = parser.parse_args()
+    data = Data(args.candidates)
+    print(f'{len(data.right)} candidates, {int(data.right.sum())} right, {len(data.names)} terms')
+    reliability(data)
+    booster = Booster(data.names)
+    booster.fit(data.terms, data.right, data.weight)
+    args.table.write_text(table(booster))
+    print(f'{args.table}: {len(booster.trees)} trees')
 
 
 if __name__ == '__main__':

@@ -1,0 +1,56 @@
+#include "stages/overrun.h"
+
+#include <algorithm>
+#include <array>
+
+namespace wirepose {
+namespace {
+
+constexpr float kMinLengthPx = 25;
+constexpr float kMinDepthM = 0.05F;
+constexpr std::array<float, 3> kBeyondPx = {5, 8, 11};
+
+enum class EndSeen { kOutside, kEnds, kGoesOn };
+
+// Two of three places beyond the end with an edge are an edge that goes on.
+EndSeen LookBeyond(const EdgeMap& map, const Vector2& end, const Vector2& direction) {
+  int hits = 0;
+  for (const float beyond : kBeyondPx) {
+    const Vector2 p = end + beyond * direction;
+    if (!map.Contains(p.x(), p.y())) return EndSeen::kOutside;
+    hits += map.HasEdge(p.x(), p.y(), EdgeMap::Direction(direction.x(), direction.y())) ? 1 : 0;
+  }
+  return hits >= 2 ? EndSeen::kGoesOn : EndSeen::kEnds;
+}
+
+}  // namespace
+
+float OverrunShare(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model,
+                   const Pose& T_camera_model, const EdgeSamples& samples) {
+  const Matrix3 R = T_camera_model.R.cast<float>();
+  const Vector3 t = T_camera_model.t.cast<float>();
+  const auto f = static_cast<float>(camera.f);
+  const Vector2 centre(static_cast<float>(camera.cx), static_cast<float>(camera.cy));
+  const auto project = [&](const Vector3& point) -> Vector2 {
+    const Vector3 p = R * point + t;
+    return f / std::max(p.z(), kMinDepthM) * p.head<2>() + centre;
+  };
+  std::array<bool, kMaxModelEdges> seen{};
+  for (const EdgeSample& s : samples) seen[s.edge] = true;
+  int ends = 0, overrun = 0;
+  for (std::size_t e = 0; e < model.edges.size(); ++e) {
+    if (!seen[e]) continue;
+    const Vector2 a = project(model.edges[e].a), b = project(model.edges[e].b);
+    const float length = (b - a).norm();
+    if (length < kMinLengthPx) continue;
+    const Vector2 direction = (b - a) / length;
+    for (const EndSeen end : {LookBeyond(left, a, -direction), LookBeyond(left, b, direction)}) {
+      if (end == EndSeen::kOutside) continue;
+      ++ends;
+      overrun += end == EndSeen::kGoesOn ? 1 : 0;
+    }
+  }
+  return static_cast<float>(overrun) / static_cast<float>(std::max(ends, 4));
+}
+
+}  // namespace wirepose

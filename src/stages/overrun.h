@@ -1,0 +1,20 @@
+// Stage 6: do image edges go on where the model's edges end?
+#ifndef WIREPOSE_STAGES_OVERRUN_H_
+#define WIREPOSE_STAGES_OVERRUN_H_
+
+#include "geometry/camera.h"
+#include "model/prepared_model.h"
+#include "stages/edge_map.h"
+#include "stages/sample_edges.h"
+
+namespace wirepose {
+
+// Share of the ends of long visible edges beyond which the left image shows an edge of the same direction, 0..1. An
+// object's edges end at its corners; lines of clutter that happen to lie right seldom do. `samples` tells which edges
+// are visible at the pose. O(edges).
+float OverrunShare(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model,
+                   const Pose& T_camera_model, const EdgeSamples& samples);
+
+}  // namespace wirepose
+
+#endif  // WIREPOSE_STAGES_OVERRUN_H_
