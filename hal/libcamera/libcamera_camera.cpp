@@ -145,8 +145,8 @@ bool LibcameraCamera::AnyLease() {
   return std::any_of(leases_.begin(), leases_.end(), [](const Lease& lease) { return lease.taken; });
 }
 
-// After a loss: closes all, and opens all anew as soon as all cameras are there. libcamera itself is started anew too: 0.0.3
-// keeps what it knew of a device by its number, and dies when a camera comes back under the same number.
+// After a loss: closes all, and opens all anew as soon as all cameras are there. libcamera itself is started anew too:
+// 0.0.3 keeps what it knew of a device by its number, and dies when a camera comes back under the same number.
 bool LibcameraCamera::Reconnect() {
   if (AnyLease()) return false;
   for (const auto& stream : streams_) stream->Stop();

@@ -22,8 +22,8 @@ namespace wirepose::hal {
 // Frames are paired by capture time (see frame_pairing.h); the newest pair is given, older ones are counted as lost by
 // their sequence. A luma plane is used in place, packed formats are copied into buffers of ours. AcquireFrame and
 // release allocate nothing of ours. When a camera goes, AcquireFrame returns kDisconnected at once and looks for it,
-// twice a second at most, until all are back; sequence numbers go on. Leases must end before that search: their buffers go with the
-// camera.
+// twice a second at most, until all are back; sequence numbers go on. Leases must end before that search: their buffers
+// go with the camera.
 //
 // Open: kBadData (calibration), kNotFound (no such camera), kUnsupported (format or size). Start: kUnsupported.
 // AcquireFrame: kTimeout, kNoBuffer (3 leases are out), kDisconnected.
