@@ -13,8 +13,8 @@ LOADER = "lib/ld-linux-aarch64.so.1"
 # What the board runs besides the sysroot's libraries; the kernel's name has its version and is found by apt.
 PACKAGES = ("busybox-static", "udev", "libblkid1", "libkmod2", "libpcre2-8-0", "libselinux1")
 MODULES = ("virtio_pci", "virtio_net", "xhci_pci", "uvcvideo")
-APPLETS = ("sh", "cut", "dmesg", "ip", "ls", "mkdir", "modprobe", "mount", "poweroff", "start-stop-daemon", "tail", "uname",
-           "xargs")
+APPLETS = ("sh", "cut", "dmesg", "ip", "killall", "ls", "mkdir", "modprobe", "mount", "poweroff", "start-stop-daemon", "tail",
+           "uname", "xargs")
 RULES = ("80-drivers.rules",)
 
 
