@@ -194,11 +194,11 @@ bool IsSamePose(const PreparedModel& model, const Matrix3& R1, const Vector3& t1
   for (const Pose& symmetry : model.symmetries) {
     const Matrix3 S = symmetry.R.cast<float>();
     const Vector3 s = symmetry.t.cast<float>();
-    bool same = true;
-    for (const Vector3& corner : model.corners) {
-      same = same && ((R1 * corner + t1) - (R2 * (S * corner + s) + t2)).squaredNorm() < limit;
-    }
-    if (same) return true;
+    // Almost always the first corner tells.
+    const auto meets = [&](const Vector3& corner) {
+      return ((R1 * corner + t1) - (R2 * (S * corner + s) + t2)).squaredNorm() < limit;
+    };
+    if (std::all_of(model.corners.begin(), model.corners.end(), meets)) return true;
   }
   return false;
 }

@@ -1,6 +1,8 @@
 #include "tools/evaluation/report/report.h"
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -89,10 +91,16 @@ Json Measures(const Evaluation& evaluation) {
   return json;
 }
 
-// The score curve as it would go on below the threshold of what is reported.
+// The score curve as it would go on below the threshold of what is reported. Candidates above it were not left out for
+// their score.
 Json ContinuedCurve(const Evaluation& evaluation, const std::vector<FrameNote>& frames) {
   std::vector<Estimate> all = evaluation.estimates;
-  for (const FrameNote& note : frames) all.insert(all.end(), note.unreported.begin(), note.unreported.end());
+  double lowest = 1;
+  for (const Estimate& estimate : all) lowest = std::min(lowest, static_cast<double>(estimate.score));
+  const auto is_below = [&](const Estimate& e) { return static_cast<double>(e.score) < lowest; };
+  for (const FrameNote& note : frames) {
+    std::copy_if(note.unreported.begin(), note.unreported.end(), std::back_inserter(all), is_below);
+  }
   const Metrics metrics = ComputeMetrics(evaluation.truth, all);
   return ToJson(ScoreCurve(CountedDetections(all, metrics), metrics.total.all.instances));
 }
