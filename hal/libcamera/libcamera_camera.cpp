@@ -7,6 +7,9 @@
 namespace wirepose::hal {
 namespace {
 
+// Between two looks for a camera that is gone: each starts libcamera anew, which takes tens of milliseconds.
+constexpr std::chrono::milliseconds kSearchPause{500};
+
 // Half the frame period; 30 Hz when the rate is the camera's own choice.
 std::chrono::nanoseconds PairingDistance(const LibcameraConfig& config) {
   const double rate = config.stream.frame_rate_hz > 0 ? config.stream.frame_rate_hz : 30;
@@ -39,6 +42,10 @@ CameraError LibcameraCamera::DoOpen(StereoCalibration& calibration) {
     for (auto& copy : lease.copy)
       copy.resize(static_cast<std::size_t>(rig_.width) * static_cast<std::size_t>(rig_.height));
   }
+  return OpenAll();
+}
+
+CameraError LibcameraCamera::OpenAll() {
   manager_ = std::make_unique<libcamera::CameraManager>();
   if (manager_->start() != 0) {
     manager_.reset();
@@ -46,11 +53,14 @@ CameraError LibcameraCamera::DoOpen(StereoCalibration& calibration) {
                 "libcamera: does not start; is another program of this machine using all cameras?");
   }
   const CameraError error = OpenStreams();
-  if (error != CameraError::kOk) {
-    manager_->stop();
-    manager_.reset();
-  }
+  if (error != CameraError::kOk) CloseAll();
   return error;
+}
+
+void LibcameraCamera::CloseAll() {
+  streams_.clear();
+  if (manager_) manager_->stop();
+  manager_.reset();
 }
 
 std::shared_ptr<libcamera::Camera> LibcameraCamera::Find(const std::string& name, std::string& error) const {
@@ -82,22 +92,14 @@ CameraError LibcameraCamera::OpenStreams() {
   for (std::size_t eye = 0; eye < count; ++eye) {
     std::string error;
     std::shared_ptr<libcamera::Camera> camera = Find(*names[eye], error);
-    if (!camera) {
-      CloseStreams();
-      return Fail(CameraError::kNotFound, std::move(error));
-    }
+    if (!camera) return Fail(CameraError::kNotFound, std::move(error));
     auto stream = std::make_unique<CameraStream>(eye, static_cast<StreamListener&>(*this));
     error = stream->Open(std::move(camera), settings);
-    if (!error.empty()) {
-      CloseStreams();
-      return Fail(CameraError::kUnsupported, std::move(error));
-    }
+    if (!error.empty()) return Fail(CameraError::kUnsupported, std::move(error));
     streams_.push_back(std::move(stream));
   }
   return CameraError::kOk;
 }
-
-void LibcameraCamera::CloseStreams() { streams_.clear(); }
 
 CameraError LibcameraCamera::DoStart() {
   next_sequence_ = 0;
@@ -109,7 +111,7 @@ CameraError LibcameraCamera::StartStreams() {
   {
     const std::lock_guard lock(mutex_);
     pairing_.Clear();
-    gone_ = false;
+    gone_ = streams_.empty();  // stopped while a camera was gone: AcquireFrame goes on looking for it
   }
   for (const auto& stream : streams_) {
     std::string error = stream->Start();
@@ -143,13 +145,17 @@ bool LibcameraCamera::AnyLease() {
   return std::any_of(leases_.begin(), leases_.end(), [](const Lease& lease) { return lease.taken; });
 }
 
-// After a loss: closes what is left and opens all anew as soon as all cameras are there.
+// After a loss: closes all, and opens all anew as soon as all cameras are there. libcamera itself is started anew too:
+// 0.0.3 keeps what it knew of a device by its number, and dies when a camera comes back under the same number.
 bool LibcameraCamera::Reconnect() {
   if (AnyLease()) return false;
   for (const auto& stream : streams_) stream->Stop();
-  CloseStreams();
-  if (OpenStreams() != CameraError::kOk) return false;
-  return StartStreams() == CameraError::kOk;
+  CloseAll();
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_search_) return false;
+  const bool open = OpenAll() == CameraError::kOk;
+  next_search_ = std::chrono::steady_clock::now() + kSearchPause;
+  return open && StartStreams() == CameraError::kOk;
 }
 
 std::optional<FramePair> LibcameraCamera::WaitForPair(std::chrono::nanoseconds timeout) {
@@ -273,10 +279,6 @@ CameraError LibcameraCamera::DoStop() {
   return CameraError::kOk;
 }
 
-void LibcameraCamera::DoClose() {
-  CloseStreams();
-  if (manager_) manager_->stop();
-  manager_.reset();
-}
+void LibcameraCamera::DoClose() { CloseAll(); }
 
 }  // namespace wirepose::hal

@@ -21,9 +21,9 @@ namespace wirepose::hal {
 
 // Frames are paired by capture time (see frame_pairing.h); the newest pair is given, older ones are counted as lost by
 // their sequence. A luma plane is used in place, packed formats are copied into buffers of ours. AcquireFrame and
-// release allocate nothing of ours. When a camera goes, AcquireFrame returns kDisconnected at once and looks for it at
-// each call, until all are back; sequence numbers go on. Leases must end before that search: their buffers go with the
-// camera.
+// release allocate nothing of ours. When a camera goes, AcquireFrame returns kDisconnected at once and looks for it,
+// twice a second at most, until all are back; sequence numbers go on. Leases must end before that search: their buffers
+// go with the camera.
 //
 // Open: kBadData (calibration), kNotFound (no such camera), kUnsupported (format or size). Start: kUnsupported.
 // AcquireFrame: kTimeout, kNoBuffer (3 leases are out), kDisconnected.
@@ -54,9 +54,10 @@ class LibcameraCamera final : public StereoCamera, private StreamListener {
   void CameraGone() override;
 
   CameraError Fail(CameraError error, std::string detail);
+  CameraError OpenAll();
+  void CloseAll();
   CameraError OpenStreams();
   CameraError StartStreams();
-  void CloseStreams();
   [[nodiscard]] std::shared_ptr<libcamera::Camera> Find(const std::string& name, std::string& error) const;
   bool Reconnect();
   std::optional<FramePair> WaitForPair(std::chrono::nanoseconds timeout);
@@ -74,6 +75,7 @@ class LibcameraCamera final : public StereoCamera, private StreamListener {
   std::string detail_;
   std::uint64_t sequence_base_ = 0;  // what is added to the camera's count; grows when it begins anew
   std::uint64_t next_sequence_ = 0;
+  std::chrono::steady_clock::time_point next_search_;  // for a camera that is gone
 
   std::mutex mutex_;  // of what libcamera's thread shares: all below
   std::condition_variable changed_;

@@ -16,6 +16,7 @@ void Accumulate(const ListUse& frame, ListUse& total) {
 }
 
 void Accumulate(const RecognitionStatistics& frame, RecognitionStatistics& total) {
+  Accumulate(frame.edge_pixels, total.edge_pixels);
   Accumulate(frame.left_segments, total.left_segments);
   Accumulate(frame.right_segments, total.right_segments);
   Accumulate(frame.lines, total.lines);

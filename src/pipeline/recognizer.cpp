@@ -21,6 +21,13 @@ bool SeenIn(const ImageRegion& region, const RectificationMap& map, const Vector
          y < top + static_cast<float>(region.height);
 }
 
+// One more filling of a list: its highest use, and all that did not fit.
+void Count(std::size_t used, std::size_t capacity, std::uint32_t dropped, ListUse& list) {
+  list.used = std::max(list.used, static_cast<std::uint32_t>(used));
+  list.capacity = static_cast<std::uint32_t>(capacity);
+  list.dropped += dropped;
+}
+
 }  // namespace
 
 const char* StageName(Stage stage) {
@@ -135,11 +142,14 @@ void Recognizer::KeepSegmentsInRegion() {
 }
 
 void Recognizer::FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
-                           Segments& segments) {
+                           Segments& segments, ListUse& pixels) {
   Arena arena(stage_scratch_);
-  EdgeImage& edges = *arena.Create<EdgeImage>();
+  EdgeImage* const created = arena.Create<EdgeImage>();
+  Check(created != nullptr);  // stage_scratch_ is sized for the largest of its users
+  EdgeImage& edges = *created;
   SmoothImage(View(image), smooth);
   FindRidges(smooth, camera().width, camera().height, map, params_.edges, edges);
+  Count(edges.ridge_count, kMaxRidgePixels, edges.ridge_dropped, pixels);
   BuildEdgeMap(edges, edge_map);
   FindSegments(params_.segments, edges, segment_scratch_, segments);
 }
@@ -150,8 +160,9 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
   RectifyImage(right, rectification_.right, {right_rectified_.data(), width, height, kMaxImageWidth});
   timer.Done(Stage::kRectify);
 
-  FindEdges(right_rectified_, rectification_.right, right_smooth_, right_edges_, right_segments_);
-  FindEdges(left_rectified_, rectification_.left, left_smooth_, left_edges_, left_segments_);
+  FindEdges(right_rectified_, rectification_.right, right_smooth_, right_edges_, right_segments_,
+            statistics.edge_pixels);
+  FindEdges(left_rectified_, rectification_.left, left_smooth_, left_edges_, left_segments_, statistics.edge_pixels);
   if (!region_.Whole()) KeepSegmentsInRegion();
   timer.Done(Stage::kSegments);
 
@@ -167,24 +178,16 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
   FindLineSets(params_.line_sets, camera(), lines_, line_sets_);
   timer.Done(Stage::kLineSets);
 
-  const auto use = [](std::size_t used, std::size_t capacity, std::uint32_t dropped) {
-    return ListUse{static_cast<std::uint32_t>(used), static_cast<std::uint32_t>(capacity), dropped};
-  };
-  statistics.left_segments = use(left_segments_.items.size(), kMaxSegments, left_segments_.dropped);
-  statistics.right_segments = use(right_segments_.items.size(), kMaxSegments, right_segments_.dropped);
-  statistics.lines = use(lines_.size(), kMaxSegments, 0);
-  statistics.line_sets = use(line_sets_.pairs.size(), kMaxImageLinePairs, line_sets_.dropped);
+  Count(left_segments_.items.size(), kMaxSegments, left_segments_.dropped, statistics.left_segments);
+  Count(right_segments_.items.size(), kMaxSegments, right_segments_.dropped, statistics.right_segments);
+  Count(lines_.size(), kMaxSegments, 0, statistics.lines);
+  Count(line_sets_.pairs.size(), kMaxImageLinePairs, line_sets_.dropped, statistics.line_sets);
 }
 
 void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result) {
   const PreparedModel& model = models_[m];
-  const auto count = [](ListUse& list, std::size_t used, std::size_t capacity, std::uint32_t dropped) {
-    list.used = std::max(list.used, static_cast<std::uint32_t>(used));
-    list.capacity = static_cast<std::uint32_t>(capacity);
-    list.dropped += dropped;
-  };
   const bool all_pairs = FindCorrespondences(params_.correspondences, camera(), model, lines_, line_sets_, pairs_);
-  count(result.statistics.correspondences, pairs_.size(), kMaxCorrespondences, pairs_.dropped());
+  Count(pairs_.size(), kMaxCorrespondences, pairs_.dropped(), result.statistics.correspondences);
   timer.Done(Stage::kCorrespondences);
 
   const SceneEdges scene{camera(), left_edges_, right_edges_};
@@ -192,7 +195,7 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   const bool all_poses =
       MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, {pairs.begin(), pairs.end()}, hypotheses_);
   result.budget_hit = result.budget_hit || !all_pairs || !all_poses;
-  count(result.statistics.hypotheses, hypotheses_.size(), kMaxHypotheses, hypotheses_.dropped());
+  Count(hypotheses_.size(), kMaxHypotheses, hypotheses_.dropped(), result.statistics.hypotheses);
   const auto& hypotheses = hypotheses_.Sorted();
   const PoseScorer scorer(params_.hypotheses.score, scene, model);
   PromoteSets(params_.promotion, scorer, camera(), model, lines_, {hypotheses.begin(), hypotheses.end()}, sets_);

@@ -156,8 +156,9 @@ class Recognizer {
   void KeepSegmentsInRegion();
   void FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics);
   void MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result);
+  // Also counts the edge pixels into `pixels`.
   void FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
-                 Segments& segments);
+                 Segments& segments, ListUse& pixels);
   void Polish(Candidate& candidate);
   void Report(RecognitionResult& result);
 

@@ -16,6 +16,7 @@ struct NamedList {
   ListUse RecognitionStatistics::*use;
 };
 constexpr NamedList kLists[] = {
+    {"edge_pixels", &RecognitionStatistics::edge_pixels},
     {"left_segments", &RecognitionStatistics::left_segments},
     {"right_segments", &RecognitionStatistics::right_segments},
     {"lines", &RecognitionStatistics::lines},
