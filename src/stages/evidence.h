@@ -49,7 +49,7 @@ struct Evidence {
   SurfaceEvidence surface;  // of the disparity map, inside the silhouette and beside it
   float disparity_px = 0;   // of the object's edges, mean: how well depth can be told
   float rms_px = 0;         // what the refinement left
-  float uncertainty = 0;    // standard deviation of the position by the refinement's covariance, over the diameter
+  float uncertainty = 0;    // of the position by what the visible edges determine, over the diameter
 };
 
 inline constexpr std::size_t kEvidenceTerms = 22;

@@ -33,6 +33,8 @@ struct Row {
   double residual = 0;  // px, image edge minus model edge along the normal
   double weight = 0;
   std::uint16_t edge = 0;
+  std::uint8_t image = 0;  // 0: left
+  Eigen::Vector2d normal;
 };
 
 using Rows = FixedVector<Row, 2 * kMaxEdgeSamples>;
@@ -99,6 +101,8 @@ class Refiner {
     row.J.tail<3>() = g.transpose();
     row.residual = static_cast<double>(offset);
     row.edge = edge;
+    row.image = shift > 0 ? 1 : 0;
+    row.normal = {nx, ny};
     rows_.push_back(row);
     ++found_[edge];
   }
@@ -157,13 +161,53 @@ class Refiner {
     }
     const Eigen::LDLT<Matrix6d> ldlt(H_);
     if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 1e-9) || weight < 6) return;
-    const double s = static_cast<double>(params_.covariance_inflation) * sigma_;
+    const Matrix6d spread = SpreadOfGradient();
     // Column by column: Eigen solves for a whole matrix by blocks, on the heap where it cannot prove them small.
-    for (int i = 0; i < 6; ++i) out.covariance.col(i) = s * s * ldlt.solve(Vector6d(Vector6d::Unit(i)));
+    Matrix6d half;
+    for (int i = 0; i < 6; ++i) half.col(i) = ldlt.solve(Vector6d(spread.col(i)));
+    half.transposeInPlace();
+    for (int i = 0; i < 6; ++i) out.covariance.col(i) = ldlt.solve(Vector6d(half.col(i)));
     out.covariance = (0.5 * (out.covariance + out.covariance.transpose())).eval();
+    double information = 0;  // trace of the position's part of the inverse
+    for (int i = 3; i < 6; ++i) information += ldlt.solve(Vector6d(Vector6d::Unit(i)))(i);
+    out.position_sigma_m = static_cast<float>(sigma_ * std::sqrt(information));
     out.rms_px = static_cast<float>(std::sqrt(sum / weight));
     out.inliers = static_cast<std::uint16_t>(inliers);
     out.ok = out.rms_px < params_.max_rms_px && out.covariance.allFinite();
+  }
+
+  // Covariance of the sum of w J r over all samples. Their errors are not independent: samples of one edge share its
+  // error (it may lie on a shadow or on the next line of print), all samples of an image share that image's (its
+  // calibration, its blur). Errors of edges are taken from how much their mean residuals scatter.
+  [[nodiscard]] Matrix6d SpreadOfGradient() const {
+    Matrix6d spread = Matrix6d::Zero();
+    Eigen::Matrix<double, 6, 4> image = Eigen::Matrix<double, 6, 4>::Zero();  // left x, y, right x, y
+    Matrix6d edges = Matrix6d::Zero();
+    double scatter = 0, total = 0;
+    const double noise = static_cast<double>(params_.noise_px) * static_cast<double>(params_.noise_px);
+    for (std::size_t i = 0; i < rows_.size();) {
+      Vector6d edge = Vector6d::Zero();
+      double weight = 0, mean = 0;
+      const std::uint16_t id = rows_[i].edge;
+      for (; i < rows_.size() && rows_[i].edge == id; ++i) {
+        const Row& row = rows_[i];
+        const Vector6d g = row.weight * row.J.transpose();
+        spread += noise * g * g.transpose();
+        edge += g;
+        for (int k = 0; k < 2; ++k) image.col(2 * row.image + k) += row.normal[k] * g;
+        weight += row.weight;
+        mean += row.weight * row.residual;
+      }
+      if (weight <= 0) continue;
+      edges += edge * edge.transpose();
+      scatter += mean * mean / weight;
+      total += weight;
+    }
+    const auto floor = static_cast<double>(params_.edge_px), common = static_cast<double>(params_.image_px);
+    const auto gain = static_cast<double>(params_.scatter_gain);
+    spread += (floor * floor + gain * scatter / std::max(total, 1e-9)) * edges;
+    spread += common * common * image * image.transpose();
+    return spread;
   }
 
   const RefineParams& params_;

@@ -16,7 +16,9 @@ struct RefineParams {
   float min_qualified_share = 0.4F;  // an edge with less support than this does not pull in the last iterations
   float max_rms_px = 1.25F;          // what fits worse after all iterations is no fit
   float sigma_floor_px = 0.3F;
-  float covariance_inflation = 2.0F;  // of the standard deviations: samples share their errors
+  // Standard deviations that the covariance is made of: of a sample, of an edge, of an image; and how much of the
+  // observed scatter of the edges' mean residuals (a variance) is added to that of an edge.
+  float noise_px = 0.4F, edge_px = 0.6F, image_px = 0.2F, scatter_gain = 6;
 };
 
 // Smoothed rectified images.
@@ -35,8 +37,9 @@ struct RefinedPose {
   Pose T_camera_model;
   Matrix6d covariance = Matrix6d::Identity();  // of PerturbLeft about the model origin: rotation, translation
   float rms_px = 0;
-  std::uint16_t inliers = 0;  // samples of both images within three sigma
-  bool ok = false;            // enough edges were found, they fit, and the normal matrix had full rank
+  float position_sigma_m = 0;  // of the position, were all samples independent: what the visible edges determine
+  std::uint16_t inliers = 0;   // samples of both images within three sigma
+  bool ok = false;             // enough edges were found, they fit, and the normal matrix had full rank
 };
 
 // Robust Gauss-Newton on SE(3). The closest image feature of eq. 11 is searched along the normal of the projected edge

@@ -1,7 +1,5 @@
 #include "stages/verification.h"
 
-#include <cmath>
-
 #include "stages/edge_evidence.h"
 #include "stages/overrun.h"
 
@@ -27,8 +25,7 @@ void GatherEvidence(const VerifyParams& params, const VerifyInput& in, const Pre
   GatherSurfaceEvidence(params.surface, in.disparity, scratch.surface, out.surface);
   out.disparity_px = MeanDisparity(scratch.samples);
   out.rms_px = pose.rms_px;
-  const double variance = pose.covariance.bottomRightCorner<3, 3>().trace();
-  out.uncertainty = static_cast<float>(std::sqrt(variance)) / model.view.diameter_m;
+  out.uncertainty = pose.position_sigma_m / model.view.diameter_m;
 }
 
 }  // namespace wirepose
