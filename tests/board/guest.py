@@ -6,6 +6,8 @@ import re
 import shutil
 import subprocess
 
+from errors import Unavailable
+
 HERE = pathlib.Path(__file__).resolve().parent
 TRIPLE = "aarch64-linux-gnu"
 LIBRARY_FOLDERS = (f"usr/lib/{TRIPLE}", f"lib/{TRIPLE}", f"usr/lib/{TRIPLE}/systemd", f"lib/{TRIPLE}/systemd")
@@ -13,13 +15,9 @@ LOADER = "lib/ld-linux-aarch64.so.1"
 # What the board runs besides the sysroot's libraries; the kernel's name has its version and is found by apt.
 PACKAGES = ("busybox-static", "udev", "libblkid1", "libkmod2", "libpcre2-8-0", "libselinux1")
 MODULES = ("virtio_pci", "virtio_net", "xhci_pci", "uvcvideo")
-APPLETS = ("sh", "cut", "dmesg", "ip", "killall", "ls", "mkdir", "modprobe", "mount", "poweroff", "start-stop-daemon", "tail",
-           "uname", "xargs")
+APPLETS = ("sh", "cut", "dmesg", "ip", "killall", "ls", "mkdir", "modprobe", "mount", "poweroff", "sed", "start-stop-daemon",
+           "tail", "uname", "xargs")
 RULES = ("80-drivers.rules",)
-
-
-class Unavailable(Exception):
-    """Why there is no board to test on, in one line."""
 
 
 class Packages:

@@ -4,7 +4,7 @@ import os
 import pathlib
 import subprocess
 
-from guest import Unavailable
+from errors import Unavailable
 
 CABLE, HOST_ADDRESS = "board", "10.0.2.2/24"  # the board's own address stands in tests/board/init
 

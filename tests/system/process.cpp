@@ -27,12 +27,24 @@ std::vector<char*> Pointers(std::vector<std::string>& texts) {
   return pointers;
 }
 
+// The program and what runs it: tests for another processor start their own programs under an emulator, too.
+std::vector<std::string> Runnable(const std::vector<std::string>& command) {
+  std::vector<std::string> runnable;
+#ifdef WIREPOSE_TEST_EMULATOR
+  const bool ours = command.at(0).rfind("/usr/", 0) != 0;  // not the machine's
+  std::istringstream emulator(ours ? WIREPOSE_TEST_EMULATOR : "");
+  for (std::string word; emulator >> word;) runnable.push_back(word);
+#endif
+  runnable.insert(runnable.end(), command.begin(), command.end());
+  return runnable;
+}
+
 }  // namespace
 
 Process::Process(const std::filesystem::path& folder, const std::string& name, const std::vector<std::string>& command,
                  const std::vector<std::string>& environment)
     : out_(folder / (name + ".out")), err_(folder / (name + ".err")) {
-  std::vector<std::string> arguments = command;
+  std::vector<std::string> arguments = Runnable(command);
   std::vector<std::string> variables = environment;
   for (char** v = environ; *v != nullptr; ++v) variables.emplace_back(*v);
   posix_spawn_file_actions_t actions;
@@ -40,7 +52,7 @@ Process::Process(const std::filesystem::path& folder, const std::string& name, c
   constexpr int kCreate = O_WRONLY | O_CREAT | O_TRUNC;
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_.c_str(), kCreate, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kCreate, 0600);
-  const int error = posix_spawn(&pid_, command.at(0).c_str(), &actions, nullptr, Pointers(arguments).data(),
+  const int error = posix_spawn(&pid_, arguments.at(0).c_str(), &actions, nullptr, Pointers(arguments).data(),
                                 Pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw std::runtime_error("cannot start " + command[0]);
