@@ -26,7 +26,7 @@ constexpr Member kMembers[] = {
     {"model views", sizeof(ModelView), kMaxModels, "kMaxModels", "spans into the model files, which the caller owns"},
     {"rectified images", kMaxPixels, 2, "kMaxPixels", "both eyes"},
     {"smoothed images", sizeof(SmoothPlane), 2, "kMaxPixels x 16 bit", "edges, sub-pixel profiles"},
-    {"normalized images", sizeof(NormalizedPlane), 2, "kMaxPixels", "stereo, face evidence"},
+    {"normalized images", sizeof(NormalizedPlane), 2, "kMaxPixels", "stereo lines, disparity map"},
     {"stage scratch", std::max(sizeof(EdgeImage), sizeof(DisparityScratch)), 1, "kMaxPixels, kMaxRidgePixels",
      "gradients and ridges of one eye at a time, then the rows of the disparity map"},
     {"disparity map", sizeof(DisparityMap), 1, "kMaxPixels / 4", "surfaces between the lines"},
