@@ -53,8 +53,7 @@ TEST_F(LatencyTest, LongCaptureToSubscriber) {
   // Health tells of the last frames, the subscriber of all of them: on a machine that was busy for a while the medians
   // are of different times.
   const double recognition_p99_us = 1e-3 * frame["p99_ns"].get<double>();
-  std::printf("recognition: p50 %.1f ms, p99 %.1f ms\n", 1e-3 * recognition_p50_us,
-              1e-3 * recognition_p99_us);
+  std::printf("recognition: p50 %.1f ms, p99 %.1f ms\n", 1e-3 * recognition_p50_us, 1e-3 * recognition_p99_us);
   for (const std::string& line : subscriber.OutLines()) {
     if (line[0] != '{') continue;
     const Json tally = Json::parse(line);
