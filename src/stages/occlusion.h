@@ -15,8 +15,8 @@ struct OcclusionParams {
 };
 
 // Removes the samples beside which the model's own surface is hidden by something nearer: an edge that cannot be seen
-// says nothing. Gives the share of the samples' image length that was removed. `surface` is the model's at the same
-// pose. O(samples).
+// says nothing. Gives the share of the samples' image length that was removed, 0..1. `samples` keep their order.
+// `surface` is the model's at the same pose. O(samples).
 float DropOccluded(const OcclusionParams& params, const DisparityMap& scene, const SurfaceMap& surface,
                    EdgeSamples& samples);
 

@@ -40,9 +40,9 @@ struct ClaimMap {
   std::array<bool, std::size_t{kWidth} * kHeight> claimed;
 };
 
-// Greedy and exclusive: candidates by falling score; each owns the image edges that support it, and one whose support
-// mostly belongs to others is dropped. Instances of one model at the same place (modulo symmetry) merge. `accepted`
-// receives indices into `candidates`, best first. O(candidates * samples).
+// Greedy and exclusive: candidates by falling score; each owns the image edges that support it, and one of whose
+// support more than max_claimed belongs to others is dropped. Instances of one model at the same place (modulo
+// symmetry) merge. `accepted` receives indices into `candidates`, best first. O(candidates * samples).
 void SelectDetections(const SelectParams& params, const RectifiedCamera& camera, const EdgeMap& left,
                       std::span<const PreparedModel> models, std::span<const Candidate> candidates,
                       VerifyScratch& scratch, ClaimMap& claims, FixedVector<std::uint16_t, kMaxDetections>& accepted,

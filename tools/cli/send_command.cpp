@@ -32,15 +32,28 @@ struct SendOptions {
                   what, options.timeout_s, Where(options.bus)));
 }
 
-// Both ways must be open before the command goes out: the answer is not kept for who comes late.
-void WaitForRobot(dds_entity_t writer, const Subscription& answers, const SendOptions& options, Clock::time_point end) {
+// A recorder learns of this program when the robot does, within milliseconds, but not always before it. Who has not met
+// the writer when the command goes out never hears it.
+constexpr auto kQuiet = std::chrono::milliseconds(250);
+
+// Both ways must be open before the command goes out, since the answer is not kept for who comes late; and no further
+// listener has come for a while.
+void WaitForListeners(dds_entity_t writer, const Subscription& answers, const SendOptions& options,
+                      Clock::time_point end) {
+  std::uint32_t listeners = 0;
+  Clock::time_point changed = Clock::now();
   for (;;) {
     dds_publication_matched_status_t status{};
-    if (dds_get_publication_matched_status(writer, &status) >= 0 && status.current_count > 0 &&
-        answers.Events().publishers > 0) {
-      return;
+    if (dds_get_publication_matched_status(writer, &status) >= 0 && status.current_count != listeners) {
+      listeners = status.current_count;
+      changed = Clock::now();
     }
-    if (Clock::now() > end) FailForSilence(options, "no wireposed that takes commands");
+    const bool open = listeners > 0 && answers.Events().publishers > 0;
+    if (open && Clock::now() - changed > kQuiet) return;
+    if (Clock::now() > end) {
+      if (open) return;
+      FailForSilence(options, "no wireposed that takes commands");
+    }
     dds_sleepfor(DDS_MSECS(5));
   }
 }
@@ -68,7 +81,7 @@ void Send(std::uint8_t action, const SendOptions& options) {
   TypedSubscription<CommandStatusMessage> answers(bus, TopicId::kCommandStatus);
   const auto command = std::make_unique<CommandMessage>();
   FillCommand(action, options, command->value);
-  WaitForRobot(*writer, answers, options, end);
+  WaitForListeners(*writer, answers, options, end);
   if (dds_write(*writer, &command->value) < 0) throw WorkFailed("DDS refused the command; try again");
   for (;;) {
     while (answers.Take()) {

@@ -9,7 +9,7 @@ namespace wirepose::evaluation {
 
 CandidateLog::CandidateLog(const std::filesystem::path& file) : out_(file) {
   out_ << "scene_id,im_id,obj_id,error_d,visib_fract,score";
-  for (const EvidenceTerm& term : EvidenceTerms({})) out_ << ',' << term.name;
+  for (const EvidenceTerm& term : NamedTerms({})) out_ << ',' << term.name;
   out_ << '\n';
 }
 
@@ -27,7 +27,7 @@ void CandidateLog::Add(const FrameView& view) {
     }
     out_ << fmt::format("{},{},{},{:.4f},{:.3f},{:.4f}", view.entry.scene_id, view.entry.im_id, model.view.id, error,
                         visible, candidate.score);
-    for (const EvidenceTerm& term : EvidenceTerms(candidate)) out_ << fmt::format(",{:.6g}", term.value);
+    for (const EvidenceTerm& term : NamedTerms(candidate)) out_ << fmt::format(",{:.6g}", term.value);
     out_ << '\n';
   }
 }

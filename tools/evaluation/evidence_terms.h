@@ -13,8 +13,8 @@ struct EvidenceTerm {
   double value;
 };
 
-// All terms in one order, the same for every candidate: those of the evidence, then rms_px and inliers of the pose.
-std::vector<EvidenceTerm> EvidenceTerms(const Candidate& candidate);
+// The terms that the score reads, in its order (TermsOf), the same for every candidate.
+std::vector<EvidenceTerm> NamedTerms(const Candidate& candidate);
 
 }  // namespace wirepose::evaluation
 

@@ -89,7 +89,7 @@ Json DrawPose(const RectifiedCamera& camera, const ModelView& model, const Pose&
 
 Json EvidenceToJson(const Candidate& candidate) {
   Json json = Json::object();
-  for (const EvidenceTerm& term : EvidenceTerms(candidate)) json[term.name] = term.value;
+  for (const EvidenceTerm& term : NamedTerms(candidate)) json[term.name] = term.value;
   return json;
 }
 
