@@ -108,8 +108,9 @@ class PixelTracer {
   };
 
   void TracePacket(const Pixel& pixel, int first, int count, std::array<float, kLanes>& radiance) const {
-    alignas(64) RTCRayHit16 query;
-    alignas(64) RTCRay16 shadow;
+    // Lanes that no sample uses hold zeros: Embree's kernels for eight lanes check them as well.
+    alignas(64) RTCRayHit16 query{};
+    alignas(64) RTCRay16 shadow{};
     alignas(64) std::array<int, kLanes> valid{}, shadow_valid{};
     std::array<CameraRay, kLanes> rays;
     for (int k = 0; k < count; ++k) {
