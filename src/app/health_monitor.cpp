@@ -18,7 +18,6 @@ void Accumulate(const ListUse& frame, ListUse& total) {
 void Accumulate(const RecognitionStatistics& frame, RecognitionStatistics& total) {
   Accumulate(frame.edge_pixels, total.edge_pixels);
   Accumulate(frame.left_segments, total.left_segments);
-  Accumulate(frame.right_segments, total.right_segments);
   Accumulate(frame.lines, total.lines);
   Accumulate(frame.line_sets, total.line_sets);
   Accumulate(frame.correspondences, total.correspondences);

@@ -56,7 +56,7 @@ struct ListUse {
 
 struct RecognitionStatistics {
   ListUse edge_pixels;  // on ridges: of the eye that has more; dropped in both
-  ListUse left_segments, right_segments, lines, line_sets, correspondences, hypotheses, detections;
+  ListUse left_segments, lines, line_sets, correspondences, hypotheses, detections;
 };
 
 struct RecognitionResult {

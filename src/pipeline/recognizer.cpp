@@ -142,7 +142,7 @@ void Recognizer::KeepSegmentsInRegion() {
 }
 
 void Recognizer::FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
-                           Segments& segments, ListUse& pixels) {
+                           Segments* segments, ListUse& pixels) {
   Arena arena(stage_scratch_);
   EdgeImage* const created = arena.Create<EdgeImage>();
   Check(created != nullptr);  // stage_scratch_ is sized for the largest of its users
@@ -151,7 +151,7 @@ void Recognizer::FindEdges(const ImagePlane& image, const RectificationMap& map,
   FindRidges(smooth, camera().width, camera().height, map, params_.edges, edges);
   Count(edges.ridge_count, kMaxRidgePixels, edges.ridge_dropped, pixels);
   BuildEdgeMap(edges, edge_map);
-  FindSegments(params_.segments, edges, segment_scratch_, segments);
+  if (segments != nullptr) FindSegments(params_.segments, edges, segment_scratch_, *segments);
 }
 
 void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics) {
@@ -160,9 +160,8 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
   RectifyImage(right, rectification_.right, {right_rectified_.data(), width, height, kMaxImageWidth});
   timer.Done(Stage::kRectify);
 
-  FindEdges(right_rectified_, rectification_.right, right_smooth_, right_edges_, right_segments_,
-            statistics.edge_pixels);
-  FindEdges(left_rectified_, rectification_.left, left_smooth_, left_edges_, left_segments_, statistics.edge_pixels);
+  FindEdges(right_rectified_, rectification_.right, right_smooth_, right_edges_, nullptr, statistics.edge_pixels);
+  FindEdges(left_rectified_, rectification_.left, left_smooth_, left_edges_, &left_segments_, statistics.edge_pixels);
   if (!region_.Whole()) KeepSegmentsInRegion();
   timer.Done(Stage::kSegments);
 
@@ -179,7 +178,6 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
   timer.Done(Stage::kLineSets);
 
   Count(left_segments_.items.size(), kMaxSegments, left_segments_.dropped, statistics.left_segments);
-  Count(right_segments_.items.size(), kMaxSegments, right_segments_.dropped, statistics.right_segments);
   Count(lines_.size(), kMaxSegments, 0, statistics.lines);
   Count(line_sets_.pairs.size(), kMaxImageLinePairs, line_sets_.dropped, statistics.line_sets);
 }

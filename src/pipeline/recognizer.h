@@ -129,9 +129,6 @@ class Recognizer {
   [[nodiscard]] std::span<const Segment2> left_segments() const {
     return {left_segments_.items.begin(), left_segments_.items.end()};
   }
-  [[nodiscard]] std::span<const Segment2> right_segments() const {
-    return {right_segments_.items.begin(), right_segments_.items.end()};
-  }
   [[nodiscard]] std::span<const Line3> lines() const { return {lines_.begin(), lines_.end()}; }
   [[nodiscard]] const ImageLineSets& line_sets() const { return line_sets_; }
   // Of the model at hand, during StageDone(kCorrespondences), in no particular order.
@@ -156,9 +153,9 @@ class Recognizer {
   void KeepSegmentsInRegion();
   void FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics);
   void MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result);
-  // Also counts the edge pixels into `pixels`.
+  // Also counts the edge pixels into `pixels`. Only the left eye's edges become segments (`segments` not null).
   void FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
-                 Segments& segments, ListUse& pixels);
+                 Segments* segments, ListUse& pixels);
   void Polish(Candidate& candidate);
   void Report(RecognitionResult& result);
 
@@ -176,7 +173,7 @@ class Recognizer {
   SmoothPlane left_smooth_, right_smooth_;
   NormalizedPlane left_normalized_, right_normalized_;
   EdgeMap left_edges_, right_edges_;
-  Segments left_segments_, right_segments_;
+  Segments left_segments_;
   DisparityMap disparity_;
   Lines3 lines_;
   ImageLineSets line_sets_;

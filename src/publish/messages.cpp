@@ -95,10 +95,13 @@ void FillLists(const RecognitionStatistics& statistics, dds_sequence_wirepose_Li
     const char* name;
     const ListUse& use;
   } lists[] = {
-      {"edge_pixels", statistics.edge_pixels},       {"left_segments", statistics.left_segments},
-      {"right_segments", statistics.right_segments}, {"lines", statistics.lines},
-      {"line_sets", statistics.line_sets},           {"correspondences", statistics.correspondences},
-      {"hypotheses", statistics.hypotheses},         {"detections", statistics.detections},
+      {"edge_pixels", statistics.edge_pixels},
+      {"left_segments", statistics.left_segments},
+      {"lines", statistics.lines},
+      {"line_sets", statistics.line_sets},
+      {"correspondences", statistics.correspondences},
+      {"hypotheses", statistics.hypotheses},
+      {"detections", statistics.detections},
   };
   static_assert(std::size(lists) <= kMaxLists);
   static_assert(sizeof(RecognitionStatistics) == std::size(lists) * sizeof(ListUse), "a list is missing here");

@@ -18,7 +18,7 @@
 
 namespace wirepose {
 
-inline constexpr std::size_t kMaxLists = 8;  // bounded lists a message can report on; the recognizer has as many
+inline constexpr std::size_t kMaxLists = 8;  // bounded lists a message can report on; the recognizer has one fewer
 
 // Of a scene: remove the old ones, all lines, and for each object wireframe, line set and label.
 inline constexpr std::size_t kMaxMarkers = 2 + 3 * kMaxDetections;

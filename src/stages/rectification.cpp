@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/simd.h"
+
 namespace wirepose {
 namespace {
 
@@ -119,31 +121,62 @@ bool IsUsable(const CameraIntrinsics& c) {
   return finite && c.fx > 1 && c.fy > 1 && c.fx < 1e5 && c.fy < 1e5;
 }
 
-// Bilinear values of columns [begin, end).
-void ResampleRow(ImageView raw, const RowCursor& cursor, int begin, int end, std::uint8_t* row) {
+// One row at work: where its pixels lie in the raw image (16.16), and the four raw pixels around each place in one
+// word.
+struct RowScratch {
+  std::array<std::int32_t, kMaxImageWidth> u, v;
+  std::array<std::uint32_t, kMaxImageWidth> offset, four;
+};
+
+// Positions of columns [begin, end), both multiples of kNodeStep.
+void PlaceRow(const RowCursor& cursor, int begin, int end, RowScratch& s) {
   constexpr int kStep = RectificationMap::kNodeStep;
-  const int last_x = raw.width - 2, last_y = raw.height - 2;
-  for (int x0 = begin / kStep * kStep; x0 < end; x0 += kStep) {
-    const RectificationMap::Node from = cursor.At(x0 / kStep);
+  RectificationMap::Node from = cursor.At(begin / kStep);
+  for (int x0 = begin; x0 < end; x0 += kStep) {
     const RectificationMap::Node to = cursor.At(x0 / kStep + 1);
     const std::int32_t dx = (to.x - from.x) / kStep, dy = (to.y - from.y) / kStep;
-    const int first = std::max(begin, x0), last = std::min(end, x0 + kStep);
-    std::int32_t u = from.x + (first - x0) * dx, v = from.y + (first - x0) * dy;
-    // Only the image's last column and row need clamping, and few runs touch them.
-    const std::int32_t u_end = u + (last - first) * dx, v_end = v + (last - first) * dy;
-    const bool interior = std::max(u, u_end) >> 16 < last_x && std::max(v, v_end) >> 16 < last_y;
-    for (int x = first; x < last; ++x, u += dx, v += dy) {
-      const int xi = interior ? u >> 16 : std::min<std::int32_t>(u >> 16, last_x);
-      const int yi = interior ? v >> 16 : std::min<std::int32_t>(v >> 16, last_y);
-      const int fx = (u - (xi << 16)) >> 8;  // 0..256
-      const int fy = (v - (yi << 16)) >> 8;
-      const std::uint8_t* p = raw.data + yi * raw.stride + xi;
-      const std::uint8_t* q = p + raw.stride;
-      const int top = p[0] * (256 - fx) + p[1] * fx;
-      const int bottom = q[0] * (256 - fx) + q[1] * fx;
-      row[x] = static_cast<std::uint8_t>((top * (256 - fy) + bottom * fy + 32768) >> 16);
+    for (int i = 0; i < kStep; ++i) {
+      s.u[static_cast<std::size_t>(x0 + i)] = from.x + i * dx;
+      s.v[static_cast<std::size_t>(x0 + i)] = from.y + i * dy;
     }
+    from = to;
   }
+}
+
+// Whole pixels into `offset`, the rest (0..256; 256 in the last column and row only) into u and v.
+WIREPOSE_VECTOR_KERNEL void SplitPlaces(int last_x, int last_y, int stride, int begin, int end, RowScratch& s) {
+  for (int x = begin; x < end; ++x) {
+    const auto i = static_cast<std::size_t>(x);
+    const std::int32_t u = s.u[i], v = s.v[i];
+    const std::int32_t xi = (u >> 16) < last_x ? u >> 16 : last_x, yi = (v >> 16) < last_y ? v >> 16 : last_y;
+    s.offset[i] = static_cast<std::uint32_t>(yi * stride + xi);
+    s.u[i] = (u - (xi << 16)) >> 8;
+    s.v[i] = (v - (yi << 16)) >> 8;
+  }
+}
+
+// Exact in integers, whatever the order of the sums.
+WIREPOSE_VECTOR_KERNEL void BlendRow(const RowScratch& s, int begin, int end, std::uint8_t* row) {
+  for (int x = begin; x < end; ++x) {
+    const auto i = static_cast<std::size_t>(x);
+    const auto a = static_cast<std::int32_t>(s.four[i] & 255), b = static_cast<std::int32_t>(s.four[i] >> 8 & 255);
+    const auto c = static_cast<std::int32_t>(s.four[i] >> 16 & 255), d = static_cast<std::int32_t>(s.four[i] >> 24);
+    const std::int32_t top = 256 * a + (b - a) * s.u[i], bottom = 256 * c + (d - c) * s.u[i];
+    row[x] = static_cast<std::uint8_t>((256 * top + (bottom - top) * s.v[i] + 32768) >> 16);
+  }
+}
+
+// Bilinear values of columns [begin, end): arithmetic in vectors, only the look-up goes pixel by pixel.
+void ResampleRow(ImageView raw, const RowCursor& cursor, int begin, int end, RowScratch& s, std::uint8_t* row) {
+  constexpr int kStep = RectificationMap::kNodeStep;
+  PlaceRow(cursor, begin / kStep * kStep, (end + kStep - 1) / kStep * kStep, s);
+  SplitPlaces(raw.width - 2, raw.height - 2, raw.stride, begin, end, s);
+  for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+    const std::uint8_t* p = raw.data + s.offset[i];
+    const std::uint8_t* q = p + raw.stride;
+    s.four[i] = static_cast<std::uint32_t>(p[0] | p[1] << 8) | static_cast<std::uint32_t>(q[0] | q[1] << 8) << 16;
+  }
+  BlendRow(s, begin, end, row);
 }
 
 }  // namespace
@@ -194,6 +227,7 @@ bool ComputeRectification(const StereoCalibration& calibration, Rectification& o
 }
 
 void RectifyImage(ImageView raw, const RectificationMap& map, MutableImageView out) {
+  RowScratch scratch;
   for (int y = 0; y < out.height; ++y) {
     const auto [begin, end] = map.valid[static_cast<std::size_t>(y)];
     std::uint8_t* row = out.row(y);
@@ -201,7 +235,7 @@ void RectifyImage(ImageView raw, const RectificationMap& map, MutableImageView o
       std::fill(row, row + out.width, std::uint8_t{0});
       continue;
     }
-    ResampleRow(raw, RowCursor{map, y}, begin, end, row);
+    ResampleRow(raw, RowCursor{map, y}, begin, end, scratch, row);
     std::fill(row, row + begin, row[begin]);
     std::fill(row + end, row + out.width, row[end - 1]);
   }

@@ -45,29 +45,52 @@ struct Match {
   bool found = false;
 };
 
-// Adds |left - right| of one pixel row of a strip to the costs of all disparities it can have. `cost` counts down from
-// disparity `reachable - 1`, so that memory runs up.
-WIREPOSE_VECTOR_KERNEL void AddRow(const std::uint8_t* left, const std::uint8_t* right, int count, int reachable,
-                                   std::uint16_t* cost) {
-  for (int j = 0; j < count; ++j) {
-    const std::uint8_t l = left[j];
-    for (int k = 0; k < reachable; ++k) {
+// Differences of kColumns pixels of a row with those of the right image at every disparity, added to `cost`. `right`
+// counts down: right[d] belongs to the last of the pixels at disparity d.
+template <int kColumns>
+inline void AddDifferences(const std::uint8_t* left, const std::uint8_t* right,
+                           std::array<std::uint16_t, kMaxDisparity>& cost) {
+  for (std::size_t d = 0; d < kMaxDisparity; ++d) {
+    std::uint16_t sum = cost[d];
+    for (std::size_t j = 0; j < kColumns; ++j) {
       // Difference of bytes without widening: twice the lanes of |l - r| in integers.
-      const std::uint8_t r = right[k + j];
+      const std::uint8_t l = left[j], r = right[d + kColumns - 1 - j];
       const auto difference = static_cast<std::uint8_t>((l > r ? l : r) - (l > r ? r : l));
-      cost[k] = static_cast<std::uint16_t>(cost[k] + difference);
+      sum = static_cast<std::uint16_t>(sum + difference);
     }
+    cost[d] = sum;
   }
 }
 
-// Writes costs that were counted down in the order of disparity; unreachable disparities cost kNoCost.
-void StoreReversed(const std::array<std::uint16_t, kMaxDisparity>& reversed, int reachable,
-                   std::array<std::uint16_t, kMaxDisparity>& cost) {
-  for (int d = 0; d < reachable; ++d) {
-    cost[static_cast<std::size_t>(d)] = std::min(kNoCost, reversed[static_cast<std::size_t>(reachable - 1 - d)]);
+// Of `rows` rows, kColumns pixels from `left` on, all disparities; `right` is the same place of the right image, and
+// `reachable` disparities lie in it.
+template <int kColumns>
+inline void SumDifferences(const std::uint8_t* left, const std::uint8_t* right, int rows, int reachable,
+                           std::array<std::uint16_t, kMaxDisparity>& cost) {
+  cost.fill(0);
+  std::array<std::uint8_t, kMaxDisparity + kColumns - 1> reversed{};
+  for (int y = 0; y < rows; ++y, left += kStride, right += kStride) {
+    const int count = reachable + kColumns - 1;
+    for (int k = 0; k < count; ++k) reversed[static_cast<std::size_t>(k)] = right[kColumns - 1 - k];
+    AddDifferences<kColumns>(left, reversed.data(), cost);
   }
+}
+
+WIREPOSE_VECTOR_KERNEL void CompareRow(const std::uint8_t* left, const std::uint8_t* right, int reachable,
+                                       std::array<std::uint16_t, kMaxDisparity>& cost) {
+  SumDifferences<kStripWidth>(left, right, 1, reachable, cost);
   std::fill(cost.begin() + reachable, cost.end(), kNoCost);
 }
+
+constexpr int kColumns = 3;  // of a flat line's strip
+
+WIREPOSE_VECTOR_KERNEL void CompareColumns(const std::uint8_t* left, const std::uint8_t* right, int reachable,
+                                           std::array<std::uint16_t, kMaxDisparity>& cost) {
+  SumDifferences<kColumns>(left, right, kStripWidth, reachable, cost);
+  for (std::uint16_t& c : cost) c = static_cast<std::uint16_t>(c / kColumns);
+  std::fill(cost.begin() + reachable, cost.end(), kNoCost);
+}
+static_assert(kStripWidth * 255 < kNoCost);
 
 // Steep lines: scratch.cost[row][d] for the strip that starts at column offset `begin` from the edge.
 void FillRowCosts(const StereoInput& in, const RowSamples& rows, int begin, StereoScratch& scratch) {
@@ -79,19 +102,14 @@ void FillRowCosts(const StereoInput& in, const RowSamples& rows, int begin, Ster
       cost.fill(kNoCost);
       continue;
     }
-    const int reachable = std::min(kMaxDisparity, x0 + 1);
-    std::array<std::uint16_t, kMaxDisparity> reversed{};
-    const std::ptrdiff_t row = rows[r].y * kStride;
-    AddRow(in.left.data() + row + x0, in.right.data() + row + x0 - (reachable - 1), kStripWidth, reachable,
-           reversed.data());
-    StoreReversed(reversed, reachable, cost);
+    const std::ptrdiff_t at = rows[r].y * kStride + x0;
+    CompareRow(in.left.data() + at, in.right.data() + at, std::min(kMaxDisparity, x0 + 1), cost);
   }
 }
 
 // Flat lines: samples lie along the columns, the strip reaches from the edge up or down, starting at row offset
 // `begin`, and is three columns wide. It extends past the ends, where the line's end itself is what can be matched.
 void FillColumnCosts(const StereoInput& in, const RowSamples& columns, int begin, StereoScratch& scratch) {
-  constexpr int kColumns = 3;
   for (std::size_t r = 0; r < columns.size(); ++r) {
     const int x0 = static_cast<int>(std::floor(columns[r].x + 0.5F)) - kColumns / 2;
     const int y0 = columns[r].y + begin;
@@ -100,15 +118,8 @@ void FillColumnCosts(const StereoInput& in, const RowSamples& columns, int begin
       cost.fill(kNoCost);
       continue;
     }
-    const int reachable = std::min(kMaxDisparity, x0 + 1);
-    std::array<std::uint16_t, kMaxDisparity> reversed{};
-    for (int y = y0; y < y0 + kStripWidth; ++y) {
-      const std::ptrdiff_t row = y * kStride;
-      AddRow(in.left.data() + row + x0, in.right.data() + row + x0 - (reachable - 1), kColumns, reachable,
-             reversed.data());
-    }
-    for (std::uint16_t& c : reversed) c = static_cast<std::uint16_t>(c / kColumns);
-    StoreReversed(reversed, reachable, cost);
+    const std::ptrdiff_t at = y0 * kStride + x0;
+    CompareColumns(in.left.data() + at, in.right.data() + at, std::min(kMaxDisparity, x0 + 1), cost);
   }
 }
 
@@ -128,44 +139,85 @@ RowSamples FlatSamples(const Segment2& s) {
   return samples;
 }
 
-// sum[d] += cost[d].
-WIREPOSE_VECTOR_KERNEL void AddCosts(const std::uint16_t* cost, int count, std::uint16_t* sum) {
-  for (int d = 0; d < count; ++d) sum[d] = static_cast<std::uint16_t>(sum[d] + cost[d]);
+// Disparity at each row minus that of the middle, rounded; and the least and the largest of them.
+struct Slope {
+  std::array<int, kMaxStereoRows> shift;
+  int low = 0, high = 0;
+};
+
+Slope MakeSlope(const RowSamples& rows, int steps) {
+  Slope slope;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    slope.shift[r] = static_cast<int>(std::floor((2 * rows[r].t - 1) * static_cast<float>(steps) + 0.5F));
+    slope.low = std::min(slope.low, slope.shift[r]);
+    slope.high = std::max(slope.high, slope.shift[r]);
+  }
+  return slope;
 }
 
-// Lowers best_at[d] to sum[d] and returns the smallest sum.
-WIREPOSE_VECTOR_KERNEL std::uint16_t LowerTo(const std::uint16_t* sum, int count, std::uint16_t* best_at) {
+constexpr int kBlock = 16;
+using RowPointers = std::array<const std::uint16_t*, kMaxStereoRows>;
+
+// Sums the rows' costs at disparities [0, count), lowers best_at[d] to them, and returns the smallest. In blocks of
+// lanes whose sum needs no memory; the last block overlaps the one before it, which changes no minimum.
+WIREPOSE_VECTOR_KERNEL std::uint16_t SumAlong(const RowPointers& row, int count, std::uint16_t* __restrict sum,
+                                              std::uint16_t* __restrict best_at) {
+  std::uint16_t lowest[kBlock];
+  std::fill(lowest, lowest + kBlock, std::uint16_t{0xFFFF});
+  for (int done = 0; done < count; done += kBlock) {
+    const int begin = std::min(done, count - kBlock);
+    for (int k = 0; k < kBlock; ++k) {
+      const int d = begin + k;
+      const auto value =
+          static_cast<std::uint16_t>(row[0][d] + row[1][d] + row[2][d] + row[3][d] + row[4][d] + row[5][d] + row[6][d] +
+                                     row[7][d] + row[8][d] + row[9][d] + row[10][d] + row[11][d]);
+      sum[d] = value;
+      best_at[d] = best_at[d] < value ? best_at[d] : value;
+      lowest[k] = lowest[k] < value ? lowest[k] : value;
+    }
+  }
+  return *std::min_element(lowest, lowest + kBlock);
+}
+static_assert(kMaxStereoRows == 12, "SumAlong adds twelve rows");
+
+// Lowest cost more than two disparities away from `middle`.
+WIREPOSE_VECTOR_KERNEL std::uint16_t LowestBeside(const std::array<std::uint16_t, kMaxDisparity>& cost, int middle) {
   std::uint16_t lowest = 0xFFFF;
-  for (int d = 0; d < count; ++d) {
-    best_at[d] = best_at[d] < sum[d] ? best_at[d] : sum[d];
-    lowest = lowest < sum[d] ? lowest : sum[d];
+  for (int d = 0; d < middle - 2; ++d) {
+    const std::uint16_t c = cost[static_cast<std::size_t>(d)];
+    lowest = lowest < c ? lowest : c;
+  }
+  for (int d = middle + 3; d < kMaxDisparity; ++d) {
+    const std::uint16_t c = cost[static_cast<std::size_t>(d)];
+    lowest = lowest < c ? lowest : c;
   }
   return lowest;
 }
 
-// Smallest cost over all (middle disparity, slope). Slopes advance such that the ends move by one pixel.
+// Slopes advance such that the ends move by one pixel, up to this many.
+constexpr int kMaxSlope = 12;
+static_assert(kMaxDisparity - 4 * kMaxSlope - 1 >= kBlock, "shifts stay below 2 kMaxSlope, even beyond the ends");
+
+// Stands for rows that a short segment does not have.
+constexpr std::array<std::uint16_t, kMaxDisparity> kNoRow{};
+
+// Smallest cost over all (middle disparity, slope).
 Match SearchDisparity(const StereoLineParams& params, const Segment2& segment, const RowSamples& rows,
                       StereoScratch& scratch) {
   Match match;
   const float reach = 0.5F * params.max_disparity_slope * segment.Length();  // of an end against the middle
-  const int steps = std::min(12, static_cast<int>(reach));
+  const int steps = std::min(kMaxSlope, static_cast<int>(reach));
   scratch.best_at.fill(0xFFFF);
   std::uint32_t best = 0xFFFF;
   for (int s = -steps; s <= steps; ++s) {
-    scratch.sum.fill(0);
-    int low = 0, high = 0;
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      // Disparity at this row minus that of the middle, rounded.
-      const int shift = static_cast<int>(std::floor((2 * rows[r].t - 1) * static_cast<float>(s) + 0.5F));
-      low = std::min(low, shift);
-      high = std::max(high, shift);
-      const int d0 = std::max(0, -shift);
-      const int d1 = std::min(kMaxDisparity, kMaxDisparity - shift);
-      AddCosts(scratch.cost[r].data() + shift + d0, d1 - d0, scratch.sum.data() + d0);
-    }
-    const int first = 1 - low, count = kMaxDisparity - high - first;
-    if (count <= 0) continue;
-    const std::uint16_t lowest = LowerTo(scratch.sum.data() + first, count, scratch.best_at.data() + first);
+    const Slope slope = MakeSlope(rows, s);
+    const int first = 1 - slope.low, count = kMaxDisparity - slope.high - first;
+    const auto row = [&](std::size_t r) {
+      return r < rows.size() ? scratch.cost[r].data() + first + slope.shift[r] : kNoRow.data();
+    };
+    const std::uint16_t lowest =
+        SumAlong({row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7), row(8), row(9), row(10), row(11)},
+                 count, scratch.sum.data() + first, scratch.best_at.data() + first);
     if (lowest >= best) continue;
     best = lowest;
     const auto d =
@@ -175,12 +227,8 @@ Match SearchDisparity(const StereoLineParams& params, const Segment2& segment, c
   }
   const auto n = static_cast<float>(rows.size());
   if (static_cast<float>(best) >= 0.8F * static_cast<float>(kNoCost) * n) return match;
-  const float middle = 0.5F * (match.disparity_a + match.disparity_b);
-  std::uint32_t second = 0xFFFF;
-  for (int d = 0; d < kMaxDisparity; ++d) {
-    if (std::abs(static_cast<float>(d) - middle) > 2.5F)
-      second = std::min<std::uint32_t>(second, scratch.best_at[static_cast<std::size_t>(d)]);
-  }
+  const auto middle = static_cast<int>(0.5F * (match.disparity_a + match.disparity_b));  // whole: d of the best
+  const std::uint16_t second = LowestBeside(scratch.best_at, middle);
   match.cost = static_cast<float>(best) / n;
   match.cost_ratio = (static_cast<float>(best) + n) / (static_cast<float>(second) + n);
   match.found = true;

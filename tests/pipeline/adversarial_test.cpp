@@ -41,10 +41,9 @@ class Adversarial : public ::testing::Test {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
   }
 
-  static std::array<ListUse, 8> Lists() {
+  static std::array<ListUse, 7> Lists() {
     const RecognitionStatistics& s = result_.statistics;
-    return {s.edge_pixels, s.left_segments,   s.right_segments, s.lines,
-            s.line_sets,   s.correspondences, s.hypotheses,     s.detections};
+    return {s.edge_pixels, s.left_segments, s.lines, s.line_sets, s.correspondences, s.hypotheses, s.detections};
   }
 
   static Recognizer recognizer_;

@@ -61,8 +61,7 @@ class RecognizerDump {
     }
     const RecognitionStatistics& s = result.statistics;
     text_ += "statistics: used/dropped";
-    for (const ListUse& use :
-         {s.left_segments, s.right_segments, s.lines, s.line_sets, s.correspondences, s.hypotheses, s.detections}) {
+    for (const ListUse& use : {s.left_segments, s.lines, s.line_sets, s.correspondences, s.hypotheses, s.detections}) {
       Members(use.used, '/', use.dropped);
     }
     text_ += result.budget_hit ? " budget hit\n" : "\n";
@@ -121,8 +120,7 @@ inline std::string DumpAll(const Recognizer& recognizer, const RecognitionResult
     text += '\n';
   }
   RecognizerDump dump(Digits::kAll);
-  text += dump.Segments("left", recognizer.left_segments());
-  text += dump.Segments("right", recognizer.right_segments());
+  text += dump.Segments("segments", recognizer.left_segments());
   text += dump.Lines(recognizer.lines());
   text += dump.Candidates(recognizer.candidates());
   return text + dump.Detections(recognizer, result);

@@ -228,11 +228,10 @@ TEST_F(RecognizerTest, StatisticsDescribeTheFrame) {
   ASSERT_EQ(Process(testing::GoldenFrame(2), result_), RecognizerError::kOk);
   const RecognitionStatistics& s = result_.statistics;
   EXPECT_EQ(s.left_segments.used, TheRecognizer().left_segments().size());
-  EXPECT_EQ(s.right_segments.used, TheRecognizer().right_segments().size());
   EXPECT_EQ(s.lines.used, TheRecognizer().lines().size());
   EXPECT_EQ(s.detections.used, result_.detections.size());
-  for (const ListUse& use : {s.edge_pixels, s.left_segments, s.right_segments, s.lines, s.line_sets, s.correspondences,
-                             s.hypotheses, s.detections}) {
+  for (const ListUse& use :
+       {s.edge_pixels, s.left_segments, s.lines, s.line_sets, s.correspondences, s.hypotheses, s.detections}) {
     EXPECT_GT(use.capacity, 0U);
     EXPECT_LE(use.used, use.capacity);
   }

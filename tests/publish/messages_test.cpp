@@ -182,7 +182,7 @@ TEST_F(MessagesTest, ModesOfEqualWeightKeepTheirOrder) {
   auto& modes = report.result.detections[3].modes;  // three
   for (PoseMode& mode : modes) mode.weight = 1.0F / 3;
   FillMessage(report, "camera", *detections_);
-  const auto& results = detections_->value.detections._buffer[3].results;
+  const auto& results = detections_->value.detections._buffer[2].results;
   for (std::uint32_t i = 0; i < 3; ++i) {
     EXPECT_EQ(results._buffer[i].pose.pose.position.x, modes[i].T_camera_model.t.x());
   }
@@ -230,11 +230,11 @@ TEST_F(MessagesTest, NativeMessageCarriesEverything) {
 TEST_F(MessagesTest, ListsAreReportedByName) {
   FillMessage(RandomReport(random_, 0), "camera", *recognition_);
   const auto& lists = recognition_->value.lists;
-  ASSERT_EQ(lists._length, 8u);
-  EXPECT_STREQ(lists._buffer[3].name, "lines");
-  EXPECT_EQ(lists._buffer[3].used, 84u);
-  EXPECT_EQ(lists._buffer[3].capacity, 256u);
-  EXPECT_EQ(lists._buffer[3].dropped, 3u);
+  ASSERT_EQ(lists._length, 7u);
+  EXPECT_STREQ(lists._buffer[2].name, "lines");
+  EXPECT_EQ(lists._buffer[2].used, 84u);
+  EXPECT_EQ(lists._buffer[2].capacity, 256u);
+  EXPECT_EQ(lists._buffer[2].dropped, 3u);
 }
 
 TEST_F(MessagesTest, NamelessModelIsCalledByItsNumber) {

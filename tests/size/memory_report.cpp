@@ -31,7 +31,7 @@ constexpr Member kMembers[] = {
      "gradients and ridges of one eye at a time, then the rows of the disparity map"},
     {"disparity map", sizeof(DisparityMap), 1, "kMaxPixels / 4", "surfaces between the lines"},
     {"edge maps", sizeof(EdgeMap), 2, "kMaxPixels x 16 directions", "one look-up a sample when poses are scored"},
-    {"2D segments", sizeof(Segments), 2, "kMaxSegments", "real kitchens show 150 to 300; the longest are kept"},
+    {"2D segments", sizeof(Segments), 1, "kMaxSegments", "real kitchens show 150 to 300; the longest are kept"},
     {"3D lines", sizeof(Lines3), 1, "kMaxSegments", "one a left segment"},
     {"image line sets", sizeof(ImageLineSets), 1, "kMaxImageLinePairs, twice",
      "collected by quality, then grouped by base line"},

@@ -53,9 +53,7 @@ void StageHasher::DoStageDone(Stage stage) {
       digest.Add(recognizer_.right_rectified());
       return;
     case Stage::kSegments:
-      HashOrdered(recognizer_.left_segments(), digest, HashSegment);
-      HashOrdered(recognizer_.right_segments(), digest, HashSegment);
-      return;
+      return HashOrdered(recognizer_.left_segments(), digest, HashSegment);
     case Stage::kStereoLines:
       HashDisparityMap(recognizer_.disparity_map(), digest);
       return HashOrdered(recognizer_.lines(), digest, HashLine);

@@ -177,8 +177,8 @@ TEST_F(ReportTest, HoldsPicturesLinesAndCurves) {
     for (const char* eye : {"left", "right"}) {
       EXPECT_THAT(frame.at("pictures").at(eye).get<std::string>(),
                   ::testing::StartsWith("data:image/jpeg;base64,/9j/"));
-      EXPECT_GT(frame.at("segments").at(eye).size(), 4U * 50);
     }
+    EXPECT_GT(frame.at("segments").size(), 4U * 50);
     EXPECT_GT(frame.at("lines").size(), 6U * 20);
     EXPECT_EQ(frame.at("lines").size() % 6, 0U);
   }

@@ -18,7 +18,6 @@ struct NamedList {
 constexpr NamedList kLists[] = {
     {"edge_pixels", &RecognitionStatistics::edge_pixels},
     {"left_segments", &RecognitionStatistics::left_segments},
-    {"right_segments", &RecognitionStatistics::right_segments},
     {"lines", &RecognitionStatistics::lines},
     {"line_sets", &RecognitionStatistics::line_sets},
     {"correspondences", &RecognitionStatistics::correspondences},

@@ -121,6 +121,6 @@ function frameDetails(item) {
         (!i.counts ? 'does not count' : i.hit ? `found, score ${fixed(i.score, 2)}, ${fixed(i.translation_mm, 1)} mm, ${fixed(i.rotation_deg, 2)} deg` : `missed (${i.cause})`),
         instanceKind(i))),
       frame.detections.filter((d) => d.verdict === 'false').map((d) => row(d, `${nameOf(d.object)} reported with ${fixed(d.score, 2)}: false (${d.cause})`, 'false'))),
-    el('p', { class: 'quiet' }, `${frame.segments.left.length / 4} segments, ${frame.lines.length / 6} of them with depth`),
+    el('p', { class: 'quiet' }, `${frame.segments.length / 4} segments, ${frame.lines.length / 6} of them with depth`),
   ];
 }

@@ -176,7 +176,7 @@ Result<FrameNote, std::string> TakeNote(const FrameView& view, double min_score)
       {"f_baseline", recognizer.camera().f * recognizer.camera().baseline},
       {"pictures",
        {{"left", EncodePicture(recognizer.left_rectified())}, {"right", EncodePicture(recognizer.right_rectified())}}},
-      {"segments", {{"left", ToJson(recognizer.left_segments())}, {"right", ToJson(recognizer.right_segments())}}},
+      {"segments", ToJson(recognizer.left_segments())},
       {"lines", ToJson(recognizer.lines())}};
   if (note.json["pictures"]["left"] == "") {
     return unexpected<std::string>(

@@ -84,7 +84,7 @@ function layersOf(frame, eye, focus) {
   const truth = (i) => wireframe(i.pose, instanceKind(i), eye, i.counts && !i.hit ? nameOf(i.object) + ' missed' : '');
   const found = (d) => wireframe(d.pose, d.verdict === 'false' ? 'false' : 'hit', eye, `${nameOf(d.object)} ${fixed(d.score, 2)}`);
   return [
-    layer('segments', svg('path', { d: segmentPath(frame.segments[eye]) })),
+    layer('segments', svg('path', { d: segmentPath(eye === 'left' ? frame.segments : []) })),
     layer('lines', ...depthLines(frame, eye)),
     layer('truth', ...frame.instances.filter((i) => i.pose).map(truth)),
     layer('candidate', focus && focus.candidate ? wireframe(focus.candidate, 'nearest', eye, '') : null),
