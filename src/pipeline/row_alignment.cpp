@@ -104,9 +104,7 @@ void AlignmentMonitor::Update(const RectifiedCamera& camera, std::span<const Row
     return;
   }
   frames_without_ = 0;
-  steady_.H = kMemory * steady_.H + normal.H;
-  steady_.g = kMemory * steady_.g + normal.g;
-  steady_.weight = kMemory * steady_.weight + normal.weight;
+  AddToSteady(normal, motion);
   const Vector5 steady = steady_.Solve();
   varying_[frames_ % kRecent] = normal.Power(motion - steady) - noise_power;
   frames_ += frames_ < std::numeric_limits<std::uint32_t>::max() ? 1 : 0;
@@ -116,6 +114,19 @@ void AlignmentMonitor::Update(const RectifiedCamera& camera, std::span<const Row
   std::array<double, kRecent> varying = varying_;
   alignment_.varying_px = Root(Median(std::span<double>(varying)));
   Judge();
+}
+
+void AlignmentMonitor::AddToSteady(const Normal& frame, const Vector5& motion) {
+  // What is far from all before may be a wild frame, or the beginning of something new: it counts, but less.
+  constexpr double kNear_px = 2 * double{kLimit_px};
+  double share = 1;
+  if (steady_.weight > 0) {
+    const double distance = std::sqrt(std::max(0.0, frame.Power(motion - steady_.Solve())));
+    if (distance > kNear_px) share = kNear_px / distance;
+  }
+  steady_.H = kMemory * steady_.H + share * frame.H;
+  steady_.g = kMemory * steady_.g + share * frame.g;
+  steady_.weight = kMemory * steady_.weight + share * frame.weight;
 }
 
 void AlignmentMonitor::Judge() {

@@ -40,7 +40,7 @@ struct RowAlignment {
 // changes. Motion along the rows alone shows nothing.
 //
 // What this cannot tell: a rig that keeps one and the same motion for several seconds looks like one that is out of
-// calibration, and one that was knocked like one with a time offset until the new state has lasted (about 90 frames).
+// calibration, and one that was knocked like one with a time offset until the new state has lasted (100 to 300 frames).
 //
 // Fixed memory, no clock, not thread safe. The same offsets give the same numbers on every target.
 class AlignmentMonitor {
@@ -78,6 +78,7 @@ class AlignmentMonitor {
   static bool Fit(const RectifiedCamera& camera, std::span<const RowOffset> offsets, Normal& normal, Vector5& motion,
                   double& noise_power);
   void DescribeFrame(std::span<const RowOffset> offsets);
+  void AddToSteady(const Normal& frame, const Vector5& motion);
   void Judge();
 
   RowAlignment alignment_;

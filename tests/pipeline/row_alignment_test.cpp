@@ -76,9 +76,9 @@ class RowAlignmentTest : public ::testing::Test {
 
 TEST_F(RowAlignmentTest, SaysNothingWithoutEnoughFramesOrCorners) {
   EXPECT_EQ(alignment().state, RowState::kUnknown);
-  for (std::uint32_t i = 1; i < AlignmentMonitor::kMinFrames; ++i) ShowUsual({});
+  for (std::uint32_t i = 1; i < AlignmentMonitor::kMinFrames; ++i) Show(Corners({}, 14, 0.1, 0));
   EXPECT_EQ(alignment().state, RowState::kUnknown);
-  ShowUsual({});
+  Show(Corners({}, 14, 0.1, 0));
   EXPECT_EQ(alignment().state, RowState::kAligned);
 
   AlignmentMonitor blind;
@@ -158,7 +158,7 @@ TEST_F(RowAlignmentTest, AKnockBecomesSteady) {
   for (int i = 0; i < 300; ++i) ShowUsual({});
   for (int i = 0; i < 20; ++i) ShowUsual(error);
   EXPECT_EQ(alignment().state, RowState::kVaryingOffset);
-  for (int i = 0; i < 200; ++i) ShowUsual(error);
+  for (int i = 0; i < 280; ++i) ShowUsual(error);
   EXPECT_EQ(alignment().state, RowState::kSteadyOffset);
 }
 
