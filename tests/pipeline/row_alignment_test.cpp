@@ -114,7 +114,7 @@ TEST_F(RowAlignmentTest, LastFrameIsDescribedByMedianAndSpread) {
 // Turned about each axis by as much as makes 1 px: found, and said to be steady, with the size that it has.
 TEST_F(RowAlignmentTest, TurnedEyeIsASteadyOffset) {
   for (const Vector3d& turn_deg : {Vector3d(0.11, 0, 0), Vector3d(0, 0.8, 0), Vector3d(0, 0, 0.35)}) {
-    SCOPED_TRACE(turn_deg.transpose());
+    SCOPED_TRACE(::testing::Message() << turn_deg.x() << ' ' << turn_deg.y() << ' ' << turn_deg.z() << " degrees");
     const EyeError error{turn_deg * kDegree, Vector3d::Zero()};
     monitor_ = {};
     for (int i = 0; i < 200; ++i) ShowUsual(error);
