@@ -209,7 +209,8 @@ TEST_F(FeedFaults, LoopRepeatsImagesAndKeepsCounting) {
   for (std::size_t i = 0; i < 7; ++i) {
     EXPECT_EQ(stream[i].frame.sequence, i);
     EXPECT_EQ(stream[i].frame.capture_time.time_since_epoch(), std::chrono::milliseconds(100 * i));
-    if (i != 3 && i != 4) EXPECT_EQ(stream[i].left, Good()[i % 2].left) << i;
+    if (i == 3 || i == 4) continue;  // a fault each
+    EXPECT_EQ(stream[i].left, Good()[i % 2].left) << i;
   }
   EXPECT_EQ(stream[3].left, Good()[1].right);
   EXPECT_NE(stream[4].left, Good()[0].left);

@@ -135,7 +135,9 @@ TEST_P(LumaFormats, BothEyesSideBySide) {
   const ImageView right_image = EyeImage(frame.source, kEye, {right.data(), kEye, kHigh, kEye});
   ExpectColumns(left_image, 0, kEye);
   ExpectColumns(right_image, kEye, kEye);
-  if (frame.source.layout == LumaLayout::kPlane) EXPECT_EQ(right_image.stride, frame.source.stride);
+  if (frame.source.layout == LumaLayout::kPlane) {
+    EXPECT_EQ(right_image.stride, frame.source.stride);
+  }
 }
 
 // A frame that is short, narrow or low is refused, never read beyond its end.

@@ -36,7 +36,7 @@ Picture Cards(Random& random) {
     for (const Card& c : cards) {
       if (std::abs(u - c.x) > 50 || std::abs(v - c.y) > 50) continue;  // out of its reach
       const double a = c.cosine * (u - c.x) + c.sine * (v - c.y), b = c.cosine * (v - c.y) - c.sine * (u - c.x);
-      level += c.contrast * Step(std::abs(a) - c.half_width) * Step(std::abs(b) - c.half_height);
+      level += c.contrast * Step(c.half_width - std::abs(a)) * Step(c.half_height - std::abs(b));
     }
     return level;
   };
@@ -105,7 +105,7 @@ TEST_F(RowOffsetsTest, FindsTheRowsThatTheRightEyeIsOff) {
 TEST_F(RowOffsetsTest, RowsBeyondReachGiveNoCorners) {
   SeeMoved(30, kRowOffsetReach + 4, 1.5);
   EXPECT_GT(corners_.size(), 8u);
-  EXPECT_LE(offsets_.size(), 1u);
+  EXPECT_LE(offsets_.size(), 2u);
 }
 
 TEST_F(RowOffsetsTest, ImagesWithoutCornersGiveNone) {
