@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, LumaFormats,
     ::testing::Combine(::testing::Values("R8", "NV12", "NV21", "YUV420", "YVU420", "YUYV", "YVYU", "UYVY", "VYUY"),
                        ::testing::Values(0, 24)),
-    [](const auto& info) { return std::get<0>(info.param) + (std::get<1>(info.param) == 0 ? "" : "_padded"); });
+    [](const auto& one) { return std::get<0>(one.param) + (std::get<1>(one.param) == 0 ? "" : "_padded"); });
 
 // --- Choice
 // -----------------------------------------------------------------------------------------------------------
