@@ -33,12 +33,20 @@ const Words<LightStyle> kLights = {{"ceiling", LightStyle::kCeiling},
                                    {"flat", LightStyle::kFlat},
                                    {"under_cabinet", LightStyle::kUnderCabinet},
                                    {"mixed", LightStyle::kMixed}};
-const Words<FaultKind> kFaults = {
-    {"drop", FaultKind::kDrop},           {"duplicate", FaultKind::kDuplicate}, {"freeze", FaultKind::kFreeze},
-    {"swap", FaultKind::kSwap},           {"tear", FaultKind::kTear},           {"bit_flip", FaultKind::kBitFlip},
-    {"offset", FaultKind::kOffset},       {"exposure", FaultKind::kExposure},   {"smear", FaultKind::kSmear},
-    {"cover", FaultKind::kCover},         {"drift", FaultKind::kDrift},         {"disconnect", FaultKind::kDisconnect},
-    {"clock_step", FaultKind::kClockStep}};
+const Words<FaultKind> kFaults = {{"drop", FaultKind::kDrop},
+                                  {"duplicate", FaultKind::kDuplicate},
+                                  {"freeze", FaultKind::kFreeze},
+                                  {"swap", FaultKind::kSwap},
+                                  {"tear", FaultKind::kTear},
+                                  {"bit_flip", FaultKind::kBitFlip},
+                                  {"offset", FaultKind::kOffset},
+                                  {"exposure", FaultKind::kExposure},
+                                  {"smear", FaultKind::kSmear},
+                                  {"cover", FaultKind::kCover},
+                                  {"drift", FaultKind::kDrift},
+                                  {"disconnect", FaultKind::kDisconnect},
+                                  {"clock_step", FaultKind::kClockStep},
+                                  {"hidden_offset", FaultKind::kHiddenOffset}};
 
 template <typename T>
 T Word(const YamlSection& section, const std::string& key, const std::string& word, const Words<T>& known) {
@@ -212,8 +220,8 @@ FaultSpec ReadFault(YamlSection section) {
   section.Read("at", at, 0, 1'000'000'000);
   section.Read("frames", frames, 1, 1'000'000'000);
   const bool has_amount = section.Read("amount", fault.amount, -10000, 10000);
-  static const std::set<FaultKind> needing = {FaultKind::kBitFlip, FaultKind::kOffset, FaultKind::kExposure,
-                                              FaultKind::kDrift, FaultKind::kClockStep};
+  static const std::set<FaultKind> needing = {FaultKind::kBitFlip,  FaultKind::kOffset, FaultKind::kHiddenOffset,
+                                              FaultKind::kExposure, FaultKind::kDrift,  FaultKind::kClockStep};
   if (needing.contains(fault.kind) && !has_amount) section.Refuse("amount", "missing; this fault needs one");
   section.Finish();
   fault.at = static_cast<std::uint64_t>(at);

@@ -115,19 +115,20 @@ struct SensorSpec {
 };
 
 enum class FaultKind : std::uint8_t {
-  kDrop,        // the frame never comes: a gap in the sequence
-  kDuplicate,   // the frame before once more, with a new number and stamp
-  kFreeze,      // the images of the frame before the fault
-  kSwap,        // left and right exchanged
-  kTear,        // lower part from the frame before
-  kBitFlip,     // bits flipped in `amount` of the bytes
-  kOffset,      // right exposed `amount` ms after left
-  kExposure,    // light times `amount`
-  kSmear,       // a greasy spot on the left lens
-  kCover,       // something before the left lens
-  kDrift,       // right camera turned by `amount` degrees against its calibration
-  kDisconnect,  // the device is gone
-  kClockStep,   // stamps jump by `amount` ms, and stay
+  kDrop,          // the frame never comes: a gap in the sequence
+  kDuplicate,     // the frame before once more, with a new number and stamp
+  kFreeze,        // the images of the frame before the fault
+  kSwap,          // left and right exchanged
+  kTear,          // lower part from the frame before
+  kBitFlip,       // bits flipped in `amount` of the bytes
+  kOffset,        // right exposed `amount` ms after left
+  kHiddenOffset,  // the same, and the stamps say nothing of it
+  kExposure,      // light times `amount`
+  kSmear,         // a greasy spot on the left lens
+  kCover,         // something before the left lens
+  kDrift,         // right camera turned by `amount` degrees against its calibration
+  kDisconnect,    // the device is gone
+  kClockStep,     // stamps jump by `amount` ms, and stay
 };
 
 struct FaultSpec {

@@ -23,6 +23,9 @@ inline constexpr std::size_t kMaxRidgePixels = 51200;
 // One connected edge; longer than any straight line in the image.
 inline constexpr std::size_t kMaxChain = 2048;
 
+// Corners whose rows are compared between the eyes: one in each of 8 x 4 cells. Five numbers are estimated from them.
+inline constexpr std::size_t kMaxRowOffsets = 32;
+
 // Related pairs of image lines: 150 lines with depth make 11,000 pairs; only clutter of small tiles has more.
 inline constexpr std::size_t kMaxImageLinePairs = 6144;
 // Corresponding line sets kept per model, by rank: the paper's "small number".

@@ -9,8 +9,6 @@
 namespace wirepose::hal {
 namespace {
 
-constexpr const char* kPreferredFormats[] = {"R8", "NV12", "YUV420", "YUYV", "UYVY"};
-
 template <typename ControlType>
 bool Has(const libcamera::Camera& camera, const ControlType& control) {
   return camera.controls().find(&control) != camera.controls().end();
@@ -46,22 +44,12 @@ std::string CameraStream::ChooseFormat(const StreamSettings& settings) {
   configuration_ = camera_->generateConfiguration({libcamera::StreamRole::Viewfinder});
   if (!configuration_ || configuration_->empty()) return Error("offers no stream; choose another camera");
   libcamera::StreamConfiguration& stream = configuration_->at(0);
-  const std::vector<libcamera::PixelFormat> offered = stream.formats().pixelformats();
-  const auto offers = [&](const std::string& name) {
-    return std::any_of(offered.begin(), offered.end(), [&](const auto& format) { return format.toString() == name; });
-  };
-  std::string format = settings.pixel_format;
-  for (const char* preferred : kPreferredFormats) {
-    if (format.empty() && offers(preferred)) format = preferred;
-  }
-  const std::optional<LumaLayout> layout = LumaLayoutOf(format);
-  if (!layout || !offers(format)) {
-    std::string list;
-    for (const auto& name : offered) list.append(" ").append(name.toString());
-    return Error("has no 8 bit luma as '" + format + "'; it offers" + list +
-                 "; set pixel_format or choose another camera");
-  }
-  layout_ = *layout;
+  std::vector<std::string> offered;
+  for (const libcamera::PixelFormat& one : stream.formats().pixelformats()) offered.push_back(one.toString());
+  const Result<PixelFormat, std::string> chosen = ChoosePixelFormat(settings.pixel_format, offered);
+  if (!chosen) return Error(chosen.error());
+  const std::string& format = chosen->name;
+  layout_ = chosen->layout;
   stream.pixelFormat = libcamera::PixelFormat::fromString(format);
   stream.size = {static_cast<unsigned>(settings.width), static_cast<unsigned>(settings.height)};
   stream.bufferCount = kCameraBuffers;
@@ -110,7 +98,14 @@ std::string CameraStream::Map(Slot& slot) const {
 void CameraStream::SetControls(libcamera::ControlList& controls) const {
   namespace ids = libcamera::controls;
   const libcamera::Camera& camera = *camera_;
+#ifdef WIREPOSE_LIBCAMERA_EXPOSURE_MODES  // libcamera 0.5 and newer: each has its own switch
+  if (settings_.exposure_us > 0 && Has(camera, ids::ExposureTimeMode))
+    controls.set(ids::ExposureTimeMode, static_cast<std::int32_t>(ids::ExposureTimeModeManual));
+  if (settings_.gain > 0 && Has(camera, ids::AnalogueGainMode))
+    controls.set(ids::AnalogueGainMode, static_cast<std::int32_t>(ids::AnalogueGainModeManual));
+#else
   if (settings_.exposure_us > 0 && Has(camera, ids::AeEnable)) controls.set(ids::AeEnable, false);
+#endif
   if (settings_.exposure_us > 0 && Has(camera, ids::ExposureTime))
     controls.set(ids::ExposureTime, settings_.exposure_us);
   if (settings_.gain > 0 && Has(camera, ids::AnalogueGain)) controls.set(ids::AnalogueGain, settings_.gain);

@@ -249,13 +249,8 @@ void LibcameraCamera::FillImages(Lease& lease, StereoFrame& frame) {
 ImageView LibcameraCamera::Image(std::size_t eye, Lease& lease) {
   const EyeFrame& captured = eye == 0 ? lease.pair.left : lease.pair.right;
   const CameraStream& stream = *streams_[config_.side_by_side ? 0 : eye];
-  const LumaSource source = stream.Luma(captured.slot);
-  if (!IsComplete(source)) return {};
   const int x = config_.side_by_side && eye == 1 ? rig_.width : 0;
-  if (source.layout == LumaLayout::kPlane) return LumaInPlace(source, x, rig_.width);
-  const MutableImageView copy{lease.copy[eye].data(), rig_.width, rig_.height, rig_.width};
-  CopyLuma(source, x, copy);
-  return {copy.data, copy.width, copy.height, copy.stride};
+  return EyeImage(stream.Luma(captured.slot), x, {lease.copy[eye].data(), rig_.width, rig_.height, rig_.width});
 }
 
 void LibcameraCamera::Requeue(std::size_t eye, std::uint32_t slot) {

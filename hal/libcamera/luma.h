@@ -5,9 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "base/image_view.h"
+#include "base/result.h"
 
 namespace wirepose::hal {
 
@@ -20,6 +23,16 @@ enum class LumaLayout : std::uint8_t {
 
 // By the name that libcamera gives a pixel format; nothing for one without 8 bit luma.
 [[nodiscard]] std::optional<LumaLayout> LumaLayoutOf(std::string_view pixel_format);
+
+struct PixelFormat {
+  std::string name;  // libcamera's
+  LumaLayout layout = LumaLayout::kPlane;
+};
+
+// The format `wanted`, or, when that is empty, the first of R8, NV12, YUV420, YUYV, UYVY that is among the `offered`
+// ones. The error says what is offered and what to do; it begins with a verb: "has no ...".
+[[nodiscard]] Result<PixelFormat, std::string> ChoosePixelFormat(std::string_view wanted,
+                                                                 std::span<const std::string> offered);
 
 // A buffer as the camera filled it.
 struct LumaSource {
@@ -34,6 +47,10 @@ struct LumaSource {
 
 // The luma of columns [x, x + width) without copying. Requires kPlane and IsComplete.
 [[nodiscard]] ImageView LumaInPlace(const LumaSource& source, int x, int width);
+
+// The image of one eye: `out.width` columns from column `x` on. In place where luma has a plane of its own, else copied
+// into `out`. Empty (null data) when the buffer is not complete or does not reach that far.
+[[nodiscard]] ImageView EyeImage(const LumaSource& source, int x, const MutableImageView& out);
 
 // Copies the luma of as many columns as `out` has, from column x on. Requires IsComplete. O(pixels).
 void CopyLuma(const LumaSource& source, int x, const MutableImageView& out);

@@ -65,7 +65,8 @@ void Cover(dataset::GrayImage& image) {
 
 FramePlan PlanFrame(const sim::FeedSpec& feed, std::uint64_t sequence, std::uint64_t seed) {
   FramePlan plan;
-  plan.change.right_lag_s = 1e-6 * feed.stamp_jitter_us * double{sim::NormalFloat(sim::Mix(seed, sequence))};
+  plan.told_lag_s = 1e-6 * feed.stamp_jitter_us * double{sim::NormalFloat(sim::Mix(seed, sequence))};
+  double hidden_lag_s = 0;
   for (const sim::FaultSpec& fault : feed.faults) {
     if (!IsActive(fault, sequence)) continue;
     switch (fault.kind) {
@@ -80,7 +81,10 @@ FramePlan PlanFrame(const sim::FeedSpec& feed, std::uint64_t sequence, std::uint
         plan.repeats_last = true;
         break;
       case FaultKind::kOffset:
-        plan.change.right_lag_s += 1e-3 * fault.amount;
+        plan.told_lag_s += 1e-3 * fault.amount;
+        break;
+      case FaultKind::kHiddenOffset:
+        hidden_lag_s += 1e-3 * fault.amount;
         break;
       case FaultKind::kExposure:
         plan.change.light *= fault.amount;
@@ -96,6 +100,7 @@ FramePlan PlanFrame(const sim::FeedSpec& feed, std::uint64_t sequence, std::uint
         break;
     }
   }
+  plan.change.right_lag_s = plan.told_lag_s + hidden_lag_s;
   return plan;
 }
 

@@ -18,6 +18,7 @@ struct FramePlan {
   bool is_disconnected = false;  // the device is gone while it would have come
   bool repeats_last = false;     // the images of the frame given out before
   sim::ShotChange change;        // what the renderer has to know
+  double told_lag_s = 0;         // of the right eye, as the stamps have it
   std::chrono::nanoseconds stamp_shift{0};
   std::vector<sim::FaultSpec> image_faults;  // for ApplyImageFaults
 };

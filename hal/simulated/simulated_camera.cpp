@@ -74,6 +74,7 @@ class SimulatedCamera::Worker {
          std::optional<FrameCache> cache)
       : config_(config), spec_(spec), video_(std::move(video)), cache_(std::move(cache)) {
     ring_.Allocate(video_.calibration().width, video_.calibration().height);
+    loop_.resize(config_.loop_frames);
   }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -198,8 +199,25 @@ class SimulatedCamera::Worker {
     return true;
   }
 
-  // From the cache, or rendered.
-  Result<CachedFrame, std::string> Make(std::uint64_t sequence, const sim::ShotChange& change) {
+  // From memory when it was kept for the loop, from the cache, or rendered.
+  Result<void, std::string> Make(std::uint64_t sequence, const sim::ShotChange& change, CachedFrame& out) {
+    if (loop_.empty() || !(change == sim::ShotChange{})) {
+      Result<CachedFrame, std::string> made = LoadOrShoot(sequence, change);
+      if (!made) return unexpected(made.error());
+      out = *std::move(made);
+      return {};
+    }
+    std::optional<CachedFrame>& kept = loop_[sequence % loop_.size()];
+    if (!kept) {
+      Result<CachedFrame, std::string> made = LoadOrShoot(sequence % loop_.size(), change);
+      if (!made) return unexpected(made.error());
+      kept = *std::move(made);
+    }
+    out = *kept;
+    return {};
+  }
+
+  Result<CachedFrame, std::string> LoadOrShoot(std::uint64_t sequence, const sim::ShotChange& change) {
     const bool may_keep = cache_.has_value() && change == sim::ShotChange{};
     if (may_keep) {
       if (std::optional<CachedFrame> kept = cache_->Load(sequence)) return *std::move(kept);
@@ -219,10 +237,9 @@ class SimulatedCamera::Worker {
   // False when a file could not be written.
   bool FillBuffer(std::uint32_t buffer, std::uint64_t sequence, const FramePlan& plan) {
     if (!plan.repeats_last || last_.images.left.pixels.empty()) {
-      Result<CachedFrame, std::string> made = Make(sequence, plan.change);
-      if (!made) return Fail(made.error());
-      const StereoImages before = std::move(last_.images);
-      last_ = *std::move(made);
+      StereoImages before;
+      if (!plan.image_faults.empty()) before = last_.images;
+      if (const Result<void, std::string> made = Make(sequence, plan.change, last_); !made) return Fail(made.error());
       ApplyImageFaults(plan.image_faults, sim::Mix(spec_.seed, sequence), before, last_.images);
     }
     CopyImage(last_.images.left, ring_.left(buffer));
@@ -232,10 +249,10 @@ class SimulatedCamera::Worker {
     captured.buffer = buffer;
     captured.frame.sequence = sequence;
     captured.frame.capture_time = CaptureTime(since_start + plan.stamp_shift);
-    captured.frame.right_minus_left = std::chrono::nanoseconds(std::llround(1e9 * plan.change.right_lag_s));
+    captured.frame.right_minus_left = std::chrono::nanoseconds(std::llround(1e9 * plan.told_lag_s));
     captured.frame.left = ring_.left(buffer);
     captured.frame.right = ring_.right(buffer);
-    if (std::abs(plan.change.right_lag_s) >= kMaxLagS) captured.frame.status = FrameStatus::kNotSynchronous;
+    if (std::abs(plan.told_lag_s) >= kMaxLagS) captured.frame.status = FrameStatus::kNotSynchronous;
 
     const SimulatedTruth truth{sequence, captured.frame.capture_time, last_.objects};
     if (truth_file_.is_open() && !(truth_file_ << ToJsonLine(truth)).flush()) {
@@ -244,10 +261,10 @@ class SimulatedCamera::Worker {
     return Publish(captured, truth, start_ + since_start);
   }
 
-  // With a cache, not before `due`: as a camera would.
+  // With a cache or a loop, not before `due`: as a camera would.
   bool Publish(const Captured& captured, const SimulatedTruth& truth, std::chrono::steady_clock::time_point due) {
     std::unique_lock lock(mutex_);
-    if (cache_) changed_.wait_until(lock, due, [&] { return is_stopping_; });
+    if (cache_ || !loop_.empty()) changed_.wait_until(lock, due, [&] { return is_stopping_; });
     truths_.push_back(truth);
     if (truths_.size() > kTruthsKept) truths_.pop_front();
     ready_.push_back({captured});
@@ -278,7 +295,8 @@ class SimulatedCamera::Worker {
 
   // The worker thread's while it runs.
   std::ofstream truth_file_;
-  CachedFrame last_;  // as given out, faults included
+  CachedFrame last_;                              // as given out, faults included
+  std::vector<std::optional<CachedFrame>> loop_;  // what is given out over and over; empty: no loop
   std::chrono::steady_clock::time_point start_;
 
   std::thread thread_;
@@ -312,6 +330,11 @@ CameraError SimulatedCamera::DoOpen(StereoCalibration& calibration) {
   if (!targets) {
     detail_ = targets.error();
     return CameraError::kBadData;
+  }
+  if (config_.loop_frames > kMaxLoopFrames) {
+    detail_ = "simulated: a loop of " + std::to_string(config_.loop_frames) + " frames; at most " +
+              std::to_string(kMaxLoopFrames) + " are kept in memory: give fewer, or a cache";
+    return CameraError::kUnsupported;
   }
   const Result<sim::ScenarioSpec, std::string> spec = SpecOf(config_);
   if (!spec) {

@@ -24,8 +24,12 @@ struct SimulatedConfig {
   std::optional<double> frame_rate_hz;   // of the capture stamps and of the camera's motion, 1..1000
   std::optional<int> samples_per_pixel;  // 4, 9, 16, 25 or 36
   // Folder for rendered frames; when set, frames that are in it are not rendered again, and none
-  // comes before its time. Empty: frames come as fast as they are rendered.
+  // comes before its time. Empty: frames come as fast as they are rendered, unless they loop.
   std::filesystem::path cache_path;
+  // When not 0, only that many frames are rendered (at most kMaxLoopFrames) and given out over and over from memory,
+  // each at its time; sequence numbers and capture times go on. What a fault of the scenario changes in the rendering
+  // is rendered anew.
+  std::uint64_t loop_frames = 0;
   // calib.yaml of the rig to simulate, see hal/dataset/calibration_file.h; empty: the scenario's.
   std::filesystem::path calibration_path;
   // When set, one JSON object a line for every frame, written before the frame is given out:
@@ -60,6 +64,7 @@ struct SimulatedTruth {
 class SimulatedCamera final : public StereoCamera {
  public:
   static constexpr std::uint32_t kBuffers = 4;
+  static constexpr std::uint64_t kMaxLoopFrames = 1000;  // 600 MB at 640x480
 
   explicit SimulatedCamera(SimulatedConfig config);
   ~SimulatedCamera() override;

@@ -48,7 +48,7 @@ hal::ReplayConfig ReadReplay(YamlSection section) {
 hal::SimulatedConfig ReadSimulated(YamlSection section) {
   hal::SimulatedConfig config;
   std::int64_t seed = 0, scene = 0, samples = 0;
-  std::int64_t frames = static_cast<std::int64_t>(config.frame_count);
+  std::int64_t frames = static_cast<std::int64_t>(config.frame_count), loop_frames = 0;
   double rate_hz = 0;
   section.Read("meshes", config.mesh_dir);
   section.Read("scenario", config.scenario_path);
@@ -59,6 +59,8 @@ hal::SimulatedConfig ReadSimulated(YamlSection section) {
   }
   section.Read("scene", scene, 0, 1'000'000);
   section.Read("frames", frames, 0, kMaxFrames);
+  section.Read("loop_frames", loop_frames, 0, 1000);
+  config.loop_frames = static_cast<std::uint64_t>(loop_frames);
   if (section.Read("frame_rate_hz", rate_hz, 1, 1000)) config.frame_rate_hz = rate_hz;
   if (section.Read("samples_per_pixel", samples, 4, 36)) config.samples_per_pixel = static_cast<int>(samples);
   section.Read("truth_file", config.truth_path);

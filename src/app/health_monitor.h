@@ -25,6 +25,8 @@ class HealthMonitor {
   void FrameArrived(const hal::StereoFrame& frame, std::string_view detail);
   // The frame was recognized, or the recognizer refused it.
   void FrameDone(const RecognitionStatistics& statistics);
+  // What the frames so far say of the eyes.
+  void RowsMeasured(const RowAlignment& rows) { report_.rows = rows; }
   void FrameFailed(std::uint64_t sequence, std::string_view reason);
   void CameraFailed(hal::CameraError error, std::string_view detail);
   // A good frame arrived and was not looked at, as commanded.

@@ -71,6 +71,8 @@ void RobotLoop::HandleFrame(hal::FrameLease lease) {
     return;
   }
   health_.FrameDone(report_.result.statistics);
+  alignment_.Update(recognizer_.camera(), recognizer_.row_offsets());
+  health_.RowsMeasured(alignment_.alignment());
   publisher_.Publish(report_);  // counts what it has to give up
   PublishScene();
 }

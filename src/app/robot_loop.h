@@ -13,6 +13,7 @@
 #include "app/stamp_clock.h"
 #include "hal/stereo_camera.h"
 #include "pipeline/recognizer.h"
+#include "pipeline/row_alignment.h"
 #include "publish/publisher.h"
 
 namespace wirepose::app {
@@ -61,6 +62,7 @@ class RobotLoop {
   const RobotLoopConfig config_;
   HealthMonitor health_;
   StageTimer timer_;
+  AlignmentMonitor alignment_;
   FrameReport report_;
   SceneReport scene_;
   ImageReport image_;

@@ -162,16 +162,11 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
 
   FindEdges(right_rectified_, rectification_.right, right_smooth_, right_edges_, nullptr, statistics.edge_pixels);
   FindEdges(left_rectified_, rectification_.left, left_smooth_, left_edges_, &left_segments_, statistics.edge_pixels);
+  FindCorners(params_.row_offsets, left_smooth_, width, height, left_segments_, corners_);
   if (!region_.Whole()) KeepSegmentsInRegion();
   timer.Done(Stage::kSegments);
 
-  NormalizeLocally(View(left_rectified_), left_normalized_);
-  NormalizeLocally(View(right_rectified_), right_normalized_);
-  Arena arena(stage_scratch_);
-  ComputeDisparityMap(params_.disparity, width, height, left_normalized_, right_normalized_,
-                      *arena.Create<DisparityScratch>(), disparity_);
-  MatchLines(params_.stereo, {camera(), left_normalized_, right_normalized_, right_smooth_, rectification_.right},
-             left_segments_, stereo_scratch_, lines_);
+  MatchEyes();
   timer.Done(Stage::kStereoLines);
 
   FindLineSets(params_.line_sets, camera(), lines_, line_sets_);
@@ -180,6 +175,24 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
   Count(left_segments_.items.size(), kMaxSegments, left_segments_.dropped, statistics.left_segments);
   Count(lines_.size(), kMaxSegments, 0, statistics.lines);
   Count(line_sets_.pairs.size(), kMaxImageLinePairs, line_sets_.dropped, statistics.line_sets);
+}
+
+void Recognizer::MatchEyes() {
+  const int width = camera().width, height = camera().height;
+  NormalizeLocally(View(left_rectified_), left_normalized_);
+  NormalizeLocally(View(right_rectified_), right_normalized_);
+  {
+    Arena arena(stage_scratch_);
+    ComputeDisparityMap(params_.disparity, width, height, left_normalized_, right_normalized_,
+                        *arena.Create<DisparityScratch>(), disparity_);
+  }
+  MatchLines(params_.stereo, {camera(), left_normalized_, right_normalized_, right_smooth_, rectification_.right},
+             left_segments_, stereo_scratch_, lines_);
+  Arena arena(stage_scratch_);
+  MeasureRowOffsets(params_.row_offsets,
+                    {width, height, left_normalized_, right_normalized_, left_smooth_, right_smooth_,
+                     rectification_.left, rectification_.right},
+                    corners_, *arena.Create<RowOffsetScratch>(), row_offsets_);
 }
 
 void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result) {

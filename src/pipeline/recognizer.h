@@ -24,6 +24,7 @@
 #include "stages/promotion.h"
 #include "stages/rectification.h"
 #include "stages/refinement.h"
+#include "stages/row_offsets.h"
 #include "stages/score.h"
 #include "stages/segments.h"
 #include "stages/selection.h"
@@ -64,6 +65,7 @@ struct RecognizerParams {
   SegmentParams segments;
   StereoLineParams stereo;
   DisparityMapParams disparity;
+  RowOffsetParams row_offsets;
   LineSetParams line_sets;
   CorrespondenceParams correspondences;
   HypothesisParams hypotheses;
@@ -129,6 +131,8 @@ class Recognizer {
   [[nodiscard]] std::span<const Segment2> left_segments() const {
     return {left_segments_.items.begin(), left_segments_.items.end()};
   }
+  // Whether equal rows see equal planes, corner by corner; for AlignmentMonitor. Also outside the region.
+  [[nodiscard]] std::span<const RowOffset> row_offsets() const { return {row_offsets_.begin(), row_offsets_.end()}; }
   [[nodiscard]] std::span<const Line3> lines() const { return {lines_.begin(), lines_.end()}; }
   [[nodiscard]] const ImageLineSets& line_sets() const { return line_sets_; }
   // Of the model at hand, during StageDone(kCorrespondences), in no particular order.
@@ -151,6 +155,7 @@ class Recognizer {
   }
   [[nodiscard]] bool Searched(std::size_t m) const { return ((searched_ >> m) & 1U) != 0; }
   void KeepSegmentsInRegion();
+  void MatchEyes();
   void FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics);
   void MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result);
   // Also counts the edge pixels into `pixels`. Only the left eye's edges become segments (`segments` not null).
@@ -174,7 +179,9 @@ class Recognizer {
   NormalizedPlane left_normalized_, right_normalized_;
   EdgeMap left_edges_, right_edges_;
   Segments left_segments_;
+  Corners corners_;
   DisparityMap disparity_;
+  RowOffsets row_offsets_;
   Lines3 lines_;
   ImageLineSets line_sets_;
   // Per model.
@@ -187,9 +194,10 @@ class Recognizer {
 
   SegmentScratch segment_scratch_;
   StereoScratch stereo_scratch_;
-  // Of the stage at work: an eye's edge image, then the rows of the disparity map.
+  // Of the stage at work: an eye's edge image, then the rows of the disparity map, then the costs of a corner.
   alignas(EdgeImage) alignas(
       DisparityScratch) std::array<std::byte, std::max(sizeof(EdgeImage), sizeof(DisparityScratch))> stage_scratch_;
+  static_assert(sizeof(RowOffsetScratch) <= sizeof(EdgeImage) && alignof(RowOffsetScratch) <= alignof(EdgeImage));
   RefineScratch refine_scratch_;
   VerifyScratch verify_scratch_;
   ClaimMap claims_;

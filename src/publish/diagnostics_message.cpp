@@ -51,6 +51,18 @@ void Raise(Status& status, Level level, std::string_view message) {
 
 using Count = unsigned long long;
 
+void AddRows(const RowAlignment& rows, Status& status) {
+  AddValue(status, "row offset steady", "%.2f px", static_cast<double>(rows.steady_px));
+  AddValue(status, "row offset varying", "%.2f px", static_cast<double>(rows.varying_px));
+  AddValue(status, "row offset corners", "%u", rows.corners);
+  if (rows.state == RowState::kSteadyOffset) {
+    Raise(status, kWarning, "rows of the eyes are steadily off: calibrate again");
+  }
+  if (rows.state == RowState::kVaryingOffset) {
+    Raise(status, kWarning, "rows of the eyes are off at times: not exposed together, or a loose eye");
+  }
+}
+
 void AddCamera(const HealthReport& report, DiagnosticsMessage& message) {
   Status& status = Add(message, "wireposed: camera", report.camera);
   const FrameCounts& frames = report.frames;
@@ -77,6 +89,7 @@ void AddCamera(const HealthReport& report, DiagnosticsMessage& message) {
   AddValue(status, "late", "%llu", Count{frames.late});
   AddValue(status, "failed", "%llu", Count{frames.failed});
   AddText(status, "last error", report.last_error);
+  AddRows(report.rows, status);
 }
 
 void AddRecognition(const HealthReport& report, const RecentLosses& losses, DiagnosticsMessage& message) {

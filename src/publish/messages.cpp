@@ -138,6 +138,20 @@ wirepose_HealthState NativeState(HealthState state) {
   return wirepose_STARTING;
 }
 
+wirepose_RowState NativeState(RowState state) {
+  switch (state) {
+    case RowState::kUnknown:
+      return wirepose_ROWS_UNKNOWN;
+    case RowState::kAligned:
+      return wirepose_ROWS_ALIGNED;
+    case RowState::kSteadyOffset:
+      return wirepose_ROWS_STEADILY_OFF;
+    case RowState::kVaryingOffset:
+      return wirepose_ROWS_VARYINGLY_OFF;
+  }
+  return wirepose_ROWS_UNKNOWN;
+}
+
 }  // namespace
 
 const char* Describe(HealthState state) {
@@ -232,6 +246,8 @@ void FillMessage(const HealthReport& report, std::string_view version, HealthMes
   CopyText(report.camera, out.camera);
   CopyText(report.camera_status, out.camera_status);
   CopyText(report.last_error, out.last_error);
+  const RowAlignment& rows = report.rows;
+  out.rows = {NativeState(rows.state), rows.corners, rows.median_px, rows.spread_px, rows.steady_px, rows.varying_px};
   out.stage_times._length = 0;
   for (const StageTime& time : report.stage_times) {
     wirepose_StageTime& entry = out.stage_times._buffer[out.stage_times._length++];

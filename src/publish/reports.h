@@ -10,6 +10,7 @@
 #include "base/time.h"
 #include "model/model_view.h"
 #include "pipeline/recognition.h"
+#include "pipeline/row_alignment.h"
 #include "publish/fixed_heap.h"
 #include "publish/fixed_text.h"
 
@@ -82,6 +83,7 @@ struct HealthReport {
   FixedText<32> camera;         // backend
   FixedText<64> camera_status;  // "ok", or what is wrong now
   FixedText<256> last_error;    // empty: none since the start
+  RowAlignment rows;
   StageTimes stage_times;
   RecognitionStatistics lists;  // highest use and sum of drops since the start
   std::uint32_t queue_high_water = 0, queue_capacity = 0;

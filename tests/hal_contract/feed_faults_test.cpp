@@ -126,6 +126,13 @@ TEST_F(FeedFaults, OffsetMovesTheRightEyeOnlyAndSaysSo) {
   EXPECT_EQ(stream[3].frame.status, FrameStatus::kGood);
 }
 
+TEST_F(FeedFaults, HiddenOffsetIsTheSameWithoutAWord) {
+  const auto stream = Play("{ fault: hidden_offset, at: 2, amount: 40 }");
+  EXPECT_EQ(stream[2].frame.status, FrameStatus::kGood);
+  EXPECT_EQ(stream[2].frame.right_minus_left, std::chrono::nanoseconds(0));
+  EXPECT_EQ(stream[2].right, Play("{ fault: offset, at: 2, amount: 40 }")[2].right);
+}
+
 TEST_F(FeedFaults, ExposureSmearCoverAndDriftShow) {
   const auto mean = [](const std::vector<std::uint8_t>& pixels) {
     double sum = 0;
@@ -188,6 +195,29 @@ TEST_F(FeedFaults, CacheGivesTheSameBytesAtTheScenariosRate) {
     EXPECT_EQ(second[i].frame.capture_time, first[i].frame.capture_time);
   }
   EXPECT_GE(took, std::chrono::milliseconds(400)) << "five frames at 10 Hz end 0.4 s after the first";
+}
+
+// Two frames over and over, at the scenario's rate, with numbers and stamps that go on; faults still happen.
+TEST_F(FeedFaults, LoopRepeatsImagesAndKeepsCounting) {
+  SimulatedConfig config = Config("  faults: [ { fault: swap, at: 3 }, { fault: exposure, at: 4, amount: 0.3 } ]\n");
+  config.loop_frames = 2;
+  config.frame_count = 7;
+  const auto start = std::chrono::steady_clock::now();
+  const auto stream = Play(config);
+  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(600)) << "seven frames at 10 Hz";
+  ASSERT_EQ(stream.size(), 7U);
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_EQ(stream[i].frame.sequence, i);
+    EXPECT_EQ(stream[i].frame.capture_time.time_since_epoch(), std::chrono::milliseconds(100 * i));
+    if (i == 3 || i == 4) continue;  // a fault each
+    EXPECT_EQ(stream[i].left, Good()[i % 2].left) << i;
+  }
+  EXPECT_EQ(stream[3].left, Good()[1].right);
+  EXPECT_NE(stream[4].left, Good()[0].left);
+  config.loop_frames = SimulatedCamera::kMaxLoopFrames + 1;
+  SimulatedCamera camera(config);
+  EXPECT_EQ(camera.Open(), CameraError::kUnsupported);
+  EXPECT_THAT(std::string(camera.detail()), HasSubstr("1001"));
 }
 
 }  // namespace

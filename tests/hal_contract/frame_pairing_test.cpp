@@ -66,6 +66,35 @@ TEST_F(FramePairingTest, ACameraWhosePartnerIsSilentKeepsABuffer) {
   EXPECT_EQ(freed_.size(), 2U) << "at most two wait";
 }
 
+// One camera side by side gives both eyes one buffer: pairs are of one slot, at one time, and no frame lacks a partner.
+TEST_F(FramePairingTest, SideBySideFramesPairWithThemselves) {
+  std::array<bool, kCameraBuffers> with_camera{true, true, true, true};
+  for (int t = 0; t < 50; ++t) {
+    const int arrived = t % 3;  // none, one, or two since the caller last asked
+    for (int k = 0; k < arrived; ++k) {
+      const auto slot = std::find(with_camera.begin(), with_camera.end(), true);
+      ASSERT_NE(slot, with_camera.end()) << "a buffer was lost";
+      *slot = false;
+      const EyeFrame frame = Frame(static_cast<std::uint32_t>(slot - with_camera.begin()), 66 * t + 33 * k);
+      for (std::size_t eye = 0; eye < 2; ++eye) pairing_.Add(eye, frame);
+    }
+    FreedSlots freed;
+    const auto pair = pairing_.TakeNewest(freed);
+    ASSERT_EQ(pair.has_value(), arrived > 0);
+    for (const FreedSlot& f : freed) {
+      if (f.eye == 1) continue;  // the same buffer once more
+      ASSERT_FALSE(with_camera[f.slot]) << "given back twice";
+      with_camera[f.slot] = true;
+    }
+    if (!pair) continue;
+    EXPECT_EQ(pair->left.slot, pair->right.slot);
+    EXPECT_EQ(pair->left.time, pair->right.time);
+    EXPECT_EQ(pair->left.time, milliseconds(66 * t + 33 * (arrived - 1))) << "the newest";
+    with_camera[pair->left.slot] = true;  // the lease ends
+  }
+  EXPECT_EQ(pairing_.unpaired(), 0U);
+}
+
 // Random losses, delays and order of arrival: a pair is never farther apart than allowed, no slot is lost or used
 // twice.
 TEST_F(FramePairingTest, RandomStreamsKeepTheBooks) {

@@ -37,6 +37,7 @@ inline HealthReport FullHealth() {
   report.camera = LongText();
   report.camera_status = LongText();
   report.last_error = LongText();
+  report.rows = {RowState::kVaryingOffset, 32, -1.5F, 0.75F, 1.25F, 2.5F};
   while (!report.stage_times.full()) report.stage_times.push_back({{LongText()}, 1, 2, 3});
   report.models = FullLabels();
   return report;

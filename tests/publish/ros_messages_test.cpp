@@ -125,6 +125,20 @@ TEST_F(DiagnosticsTest, TroubleRaisesTheLevelAndSaysWhy) {
   EXPECT_EQ(Level(report, "bus"), 1);
   EXPECT_NE(text_.find("pool"), std::string::npos);
   report = Good();
+  report.rows = {RowState::kSteadyOffset, 20, 0.9F, 0.2F, 0.875F, 0.1F};
+  EXPECT_EQ(Level(report, "camera"), 1);
+  EXPECT_NE(text_.find("calibrate again"), std::string::npos) << text_;
+  report.rows.state = RowState::kVaryingOffset;
+  EXPECT_EQ(Level(report, "camera"), 1);
+  EXPECT_NE(text_.find("not exposed together"), std::string::npos) << text_;
+  report.state = HealthState::kCameraLost;
+  report.camera_status = "camera disconnected";
+  EXPECT_EQ(Level(report, "camera"), 2);
+  EXPECT_EQ(text_, "camera disconnected") << "what is worse hides the rest";
+  report = Good();
+  report.rows = {RowState::kAligned, 20, 0.02F, 0.2F, 0.05F, 0.1F};
+  EXPECT_EQ(Level(report, "camera"), 0);
+  report = Good();
   report.models.clear();
   EXPECT_EQ(Level(report, "models"), 1);
 }
@@ -153,6 +167,23 @@ TEST_F(DiagnosticsTest, LossesAreOverSomeTimeAfterTheLast) {
   EXPECT_EQ(Level(report, "recognition"), 1);
   report.uptime_ns += 30'000'000'000;
   EXPECT_EQ(Level(report, "recognition"), 0);
+}
+
+TEST_F(DiagnosticsTest, RowOffsetsAreValues) {
+  HealthReport report = Good();
+  report.rows = {RowState::kAligned, 17, 0.02F, 0.2F, 0.0625F, 0.125F};
+  (void)Level(report, "camera");
+  std::string values;
+  for (std::uint32_t s = 0; s < message_->value.status._length; ++s) {
+    const auto& list = message_->value.status._buffer[s].values;
+    for (std::uint32_t i = 0; i < list._length; ++i) {
+      values += std::string(list._buffer[i].key) + "=" + list._buffer[i].value + ";";
+    }
+  }
+  for (const char* const value :
+       {"row offset steady=0.06 px;", "row offset varying=0.12 px;", "row offset corners=17;"}) {
+    EXPECT_NE(values.find(value), std::string::npos) << value << " is not in " << values;
+  }
 }
 
 // --- Commands

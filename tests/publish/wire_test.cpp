@@ -183,6 +183,7 @@ TEST_F(WireTest, WhoComesLateGetsTheLastHealth) {
   for (std::uint64_t i = 1; i <= 3; ++i) {
     report.uptime_ns = i;
     report.last_error = "frame 3: image damaged";
+    report.rows = {RowState::kSteadyOffset, 20, -0.5F, 0.25F, 0.75F, 0.125F};
     const ModelView models[] = {test::MakeModel(7, "juice_dispenser")};
     report.models = LabelsOf(models, 1);
     publisher_->Publish(report);
@@ -195,6 +196,12 @@ TEST_F(WireTest, WhoComesLateGetsTheLastHealth) {
   EXPECT_EQ(received->value.uptime_ns, 3u);
   EXPECT_STREQ(received->value.version, "9.8.7");
   EXPECT_STREQ(received->value.last_error, "frame 3: image damaged");
+  EXPECT_EQ(received->value.rows.state, wirepose_ROWS_STEADILY_OFF);
+  EXPECT_EQ(received->value.rows.corners, 20u);
+  EXPECT_EQ(received->value.rows.median_px, -0.5F);
+  EXPECT_EQ(received->value.rows.spread_px, 0.25F);
+  EXPECT_EQ(received->value.rows.steady_px, 0.75F);
+  EXPECT_EQ(received->value.rows.varying_px, 0.125F);
   ASSERT_EQ(received->value.models._length, 1u);
   EXPECT_EQ(received->value.models._buffer[0].checksum, 0xC0FFEE07U);
 }

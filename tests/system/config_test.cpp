@@ -53,7 +53,7 @@ camera:
   backend: simulated
   timeout_ms: 250
   replay: { data_set: /data/set, split: train, scene: 4, loop: true, frame_rate_hz: 12.5 }
-  simulated: { meshes: meshes, calibration: rig.yaml, seed: 9, frames: 100, frame_rate_hz: 15, samples_per_pixel: 25, truth_file: truth.jsonl }
+  simulated: { meshes: meshes, calibration: rig.yaml, seed: 9, frames: 100, loop_frames: 12, frame_rate_hz: 15, samples_per_pixel: 25, truth_file: truth.jsonl }
 dds: { domain: 42, loopback: true, frame_id: eye }
 models: [a.wpm, /b]
 search_for: [3, 1]
@@ -70,6 +70,7 @@ search_for: [3, 1]
   EXPECT_EQ(config.camera.simulated.calibration_path, folder / "rig.yaml");
   EXPECT_EQ(config.camera.simulated.seed, 9u);
   EXPECT_EQ(config.camera.simulated.frame_count, 100u);
+  EXPECT_EQ(config.camera.simulated.loop_frames, 12u);
   EXPECT_EQ(config.camera.simulated.frame_rate_hz, 15);
   EXPECT_EQ(config.camera.simulated.samples_per_pixel, 25);
   EXPECT_EQ(config.camera.simulated.truth_path, folder / "truth.jsonl");

@@ -90,6 +90,14 @@ TEST(HealthMonitor, TellsSilenceFromLoss) {
   EXPECT_TRUE(health.Report(kStart).camera_status == "camera disconnected");
 }
 
+TEST(HealthMonitor, TellsWhatTheFramesSayOfTheEyes) {
+  HealthMonitor health("replay", kStart);
+  EXPECT_EQ(health.Report(kStart).rows.state, RowState::kUnknown);
+  health.RowsMeasured({RowState::kVaryingOffset, 12, 0.5F, 0.25F, 0.125F, 0.75F});
+  EXPECT_EQ(health.Report(kStart).rows.state, RowState::kVaryingOffset);
+  EXPECT_EQ(health.Report(kStart).rows.varying_px, 0.75F);
+}
+
 TEST(HealthMonitor, KeepsHighWaterAndSumOfDrops) {
   HealthMonitor health("replay", kStart);
   RecognitionStatistics statistics;

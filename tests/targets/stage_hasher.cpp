@@ -56,6 +56,7 @@ void StageHasher::DoStageDone(Stage stage) {
       return HashOrdered(recognizer_.left_segments(), digest, HashSegment);
     case Stage::kStereoLines:
       HashDisparityMap(recognizer_.disparity_map(), digest);
+      for (const RowOffset& o : recognizer_.row_offsets()) digest.Add(o.x_px, o.y_px, o.disparity_px, o.offset_px);
       return HashOrdered(recognizer_.lines(), digest, HashLine);
     case Stage::kLineSets:
       return HashOrdered(recognizer_.line_sets().pairs, digest, HashPair);

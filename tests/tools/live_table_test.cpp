@@ -53,6 +53,14 @@ TEST_F(LiveTableTest, ShowsWhatAMessageSays) {
   EXPECT_NE(text.find("health: nothing heard yet"), std::string::npos);
 }
 
+TEST_F(LiveTableTest, HealthLineTellsOfTheEyes) {
+  wirepose_Health health{};
+  health.state = wirepose_RUNNING;
+  health.rows = {wirepose_ROWS_VARYINGLY_OFF, 20, 0.5F, 0.25F, 0.125F, 0.75F};
+  table_.Add(health, kNow);
+  EXPECT_NE(table_.Draw(kNow, 200).find("rows varyingly_off (0.75 px)"), std::string::npos) << table_.Draw(kNow, 200);
+}
+
 TEST_F(LiveTableTest, TracksAreOneRowAndOthersOneEach) {
   Frame(1, {42, 0, 0}, kNow);
   Frame(2, {42, 0, 0}, kNow + 33ms);

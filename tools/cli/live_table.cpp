@@ -53,12 +53,15 @@ void LiveTable::Add(const wirepose_Recognition& message, Time now) {
 }
 
 void LiveTable::Add(const wirepose_Health& message, Time now) {
-  health_ = fmt::format("{}: camera {}: {}; {} good frames, {} bad, {} dropped; {} subscribers; pool {} of {} KiB",
-                        StateName(message.state), message.camera, message.camera_status, message.frames.good,
-                        message.frames.missing + message.frames.damaged + message.frames.not_synchronous +
-                            message.frames.late + message.frames.failed,
-                        message.results_dropped, message.events.subscribers, message.pool.used_bytes >> 10,
-                        message.pool.capacity_bytes >> 10);
+  health_ = fmt::format(
+      "{}: camera {}: {}; rows {} ({:.2f} px); {} good frames, {} bad, {} dropped; {} subscribers; "
+      "pool {} of {} KiB",
+      StateName(message.state), message.camera, message.camera_status, StateName(message.rows.state),
+      std::max(message.rows.steady_px, message.rows.varying_px), message.frames.good,
+      message.frames.missing + message.frames.damaged + message.frames.not_synchronous + message.frames.late +
+          message.frames.failed,
+      message.results_dropped, message.events.subscribers, message.pool.used_bytes >> 10,
+      message.pool.capacity_bytes >> 10);
   health_seen_ = now;
 }
 

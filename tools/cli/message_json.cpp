@@ -96,6 +96,13 @@ Json ToJson(const wirepose_Health& message) {
           {"camera", message.camera},
           {"camera_status", message.camera_status},
           {"last_error", message.last_error},
+          {"rows",
+           {{"state", StateName(message.rows.state)},
+            {"corners", message.rows.corners},
+            {"median_px", message.rows.median_px},
+            {"spread_px", message.rows.spread_px},
+            {"steady_px", message.rows.steady_px},
+            {"varying_px", message.rows.varying_px}}},
           {"stage_times",
            Each(message.stage_times,
                 [](const wirepose_StageTime& time) {

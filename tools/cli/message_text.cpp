@@ -64,6 +64,20 @@ const char* StateName(wirepose_HealthState state) {
   return "?";
 }
 
+const char* StateName(wirepose_RowState state) {
+  switch (state) {
+    case wirepose_ROWS_UNKNOWN:
+      return "unknown";
+    case wirepose_ROWS_ALIGNED:
+      return "aligned";
+    case wirepose_ROWS_STEADILY_OFF:
+      return "steadily_off";
+    case wirepose_ROWS_VARYINGLY_OFF:
+      return "varyingly_off";
+  }
+  return "?";
+}
+
 std::string ToText(const wirepose_Recognition& message) {
   std::string text =
       fmt::format("frame {} at {:.3f} s: {} object{}{}\n", message.frame_sequence,
@@ -101,6 +115,11 @@ std::string ToText(const wirepose_Health& message) {
       message.write_errors, message.events.subscribers, message.events.deadlines_missed,
       message.events.incompatible_qos, message.events.commands_accepted, message.events.commands_refused,
       message.pool.used_bytes >> 10, message.pool.capacity_bytes >> 10, message.pool.high_water_bytes >> 10);
+  const wirepose_RowAlignment& rows = message.rows;
+  text += fmt::format(
+      "  rows of the eyes: {}, steady {:.2f} px, varying {:.2f} px; last frame {} corners, median {:.2f} px, spread "
+      "{:.2f} px\n",
+      StateName(rows.state), rows.steady_px, rows.varying_px, rows.corners, rows.median_px, rows.spread_px);
   for (const wirepose_StageTime& time : Elements(message.stage_times)) {
     text += fmt::format("  {:<16} p50 {:8.3f} ms  p99 {:8.3f} ms  max {:8.3f} ms\n", time.stage,
                         Milliseconds(time.p50_ns), Milliseconds(time.p99_ns), Milliseconds(time.max_ns));

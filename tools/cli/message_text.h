@@ -13,6 +13,7 @@ namespace wirepose::cli {
 
 // Lower case: "running".
 const char* StateName(wirepose_HealthState state);
+const char* StateName(wirepose_RowState state);
 // Of a command, as on the command line: "select"; "unknown" for a number without meaning.
 const char* ActionName(std::uint8_t action);
 
