@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "stages/edge_profile.h"
@@ -67,19 +68,39 @@ class EdgePiece {
 // A supporting image edge at a sample: how far from the model edge, in the left image and in the worse of both.
 struct Support {
   float left_px = 0, worst_px = 1e9F;
+  float parallax_px = 0;  // difference of the two images' offsets
+  bool brighter = false;  // along the normal
   [[nodiscard]] bool found() const { return worst_px < 1e9F; }
+};
+
+// The hits of the samples next to an end of an edge. Where most of them lack support the edge has no corner there.
+struct EndSums {
+  static constexpr int kSamples = 3;
+  int samples = 0, hits = 0;
+  [[nodiscard]] bool full() const { return samples == kSamples; }
+  [[nodiscard]] bool held() const { return 2 * hits > samples; }
 };
 
 // Sums over the samples of one model edge.
 struct EdgeSums {
   float length_px = 0, samples = 0, hits = 0, sharp = 0, chances = 0, chance_hits = 0;
   float offset = 0, offset_squared = 0;         // of the hits in the left image, px
+  float brighter = 0, parallax_squared = 0;     // hits that get brighter along the normal; px^2
   float piece_px = 0, distinct = 0, clear = 0;  // of averaged pieces, weighted by their length
+  EndSums first;                                // the samples next to the edge's first end
+  std::uint32_t recent = 0;                     // bit k: the sample k before the newest was a hit
 
   void Add(const Support& support, float sharp_offset_px) {
     samples += 1;
+    recent = 2 * recent + (support.found() ? 1U : 0U);
+    if (!first.full()) {
+      ++first.samples;
+      first.hits += support.found() ? 1 : 0;
+    }
     if (!support.found()) return;
     hits += 1;
+    brighter += support.brighter ? 1.0F : 0.0F;
+    parallax_squared += support.parallax_px * support.parallax_px;
     sharp += support.worst_px < sharp_offset_px ? 1.0F : 0.0F;
     offset += support.left_px;
     offset_squared += support.left_px * support.left_px;
@@ -91,8 +112,13 @@ struct EdgeSums {
     distinct += piece.length_px() * distinctness;
     clear += distinctness > 0.5F ? piece.length_px() : 0.0F;
   }
+  [[nodiscard]] EndSums last() const {
+    constexpr std::uint32_t kMask = (1U << EndSums::kSamples) - 1;
+    return {std::min(EndSums::kSamples, static_cast<int>(samples)), std::popcount(recent & kMask)};
+  }
   void Add(const EdgeSums& other) {
     samples += other.samples, hits += other.hits, sharp += other.sharp;
+    parallax_squared += other.parallax_squared;
     chances += other.chances, chance_hits += other.chance_hits;
     length_px += other.length_px, piece_px += other.piece_px, distinct += other.distinct, clear += other.clear;
   }
@@ -109,7 +135,8 @@ void CollectPeaks(const EdgeProfile& profile, float threshold, Peaks& peaks) {
 
 class Gatherer {
  public:
-  Gatherer(const VerifyParams& params, const VerifyInput& input) : params_(params), in_(input) {}
+  Gatherer(const VerifyParams& params, const VerifyInput& input, const EdgeBits& outline)
+      : params_(params), in_(input), outline_(outline) {}
 
   void Run(const EdgeSamples& samples, EdgeEvidence& out) {
     float total_px = 0;
@@ -158,14 +185,14 @@ class Gatherer {
       const float left_px = std::abs(l.offset_px - at);
       if (left_px > params_.max_offset_px || left_px >= best.worst_px) continue;
       if (!right) {
-        best = {l.offset_px - at, left_px};
+        best = {l.offset_px - at, left_px, 0, l.gradient > 0};
         continue;
       }
       for (const EdgePeak& r : right_peaks_) {
         const float worst_px = std::max(left_px, std::abs(r.offset_px - at));
         if (worst_px < std::min(best.worst_px, params_.max_offset_px) && (l.gradient > 0) == (r.gradient > 0) &&
             std::abs(l.offset_px - r.offset_px) < params_.max_difference_px) {
-          best = {l.offset_px - at, worst_px};
+          best = {l.offset_px - at, worst_px, l.offset_px - r.offset_px, l.gradient > 0};
         }
       }
     }
@@ -174,21 +201,23 @@ class Gatherer {
 
   void Summarize(float total_px, EdgeEvidence& out) const {
     out = {.weakest_edge = 1, .dimmest_edge = 1};
-    EdgeSums all;
-    float variance = 0, spread_hits = 0;
-    for (const EdgeSums& e : sums_) {
+    EdgeSums all, outline, inner;
+    float variance = 0, spread_hits = 0, one_sided = 0;
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const EdgeSums& e = sums_[i];
+      if (e.samples == 0 && e.length_px == 0) continue;
       all.Add(e);
+      (HasEdge(outline_, i) ? outline : inner).Add(e);
+      one_sided += std::max(e.brighter, e.hits - e.brighter);
       if (e.hits > 3) {
         variance += e.offset_squared - e.offset * e.offset / e.hits;
         spread_hits += e.hits;
       }
-      if (e.length_px < params_.min_edge_px || e.samples < 3) continue;
-      out.edges += 1;
-      out.full_edges += Share(e.hits, e.samples) > 0.8F ? 1.0F : 0.0F;
-      out.weakest_edge = std::min(out.weakest_edge, Share(e.hits, e.samples));
-      out.dimmest_edge = std::min(out.dimmest_edge, Share(e.distinct, e.piece_px));
+      if (e.length_px >= params_.min_edge_px && e.samples >= 3) AddEdge(e, out);
     }
     out.full_edges = Share(out.full_edges, out.edges);
+    out.weak_edges = Share(out.weak_edges, out.edges);
+    out.ends = Share(out.ends, 2 * out.edges);
     out.visible_px = all.length_px;
     out.inside = Share(all.length_px, total_px);
     out.support = Share(all.hits, all.samples);
@@ -196,12 +225,31 @@ class Gatherer {
     out.sharp = Share(all.sharp, all.samples);
     out.sharp_of_support = Share(all.sharp, all.hits);
     out.spread_px = spread_hits > 0 ? std::sqrt(std::max(0.0F, variance / spread_hits)) : params_.max_offset_px;
+    out.parallax_px = all.hits > 0 ? std::sqrt(all.parallax_squared / all.hits) : params_.max_offset_px;
+    out.one_sided = Share(one_sided, all.hits);
     out.distinct = Share(all.distinct, all.piece_px);
     out.clear = Share(all.clear, all.piece_px);
+    out.outline = Share(outline.hits, outline.samples);
+    out.outline_distinct = Share(outline.distinct, outline.piece_px);
+    // A single face has no inner edges: they neither help nor harm.
+    out.inner_distinct = inner.piece_px > 0 ? Share(inner.distinct, inner.piece_px) : out.distinct;
+  }
+
+  // What each edge of some length has a say in.
+  void AddEdge(const EdgeSums& e, EdgeEvidence& out) const {
+    constexpr float kFull = 0.8F, kWeak = 0.4F;
+    const float support = Share(e.hits, e.samples);
+    out.edges += 1;
+    out.full_edges += support > kFull ? 1.0F : 0.0F;
+    out.weak_edges += support < kWeak ? 1.0F : 0.0F;
+    out.ends += (e.first.held() ? 1.0F : 0.0F) + (e.last().held() ? 1.0F : 0.0F);
+    out.weakest_edge = std::min(out.weakest_edge, support);
+    out.dimmest_edge = std::min(out.dimmest_edge, Share(e.distinct, e.piece_px));
   }
 
   const VerifyParams& params_;
   const VerifyInput& in_;
+  const EdgeBits& outline_;
   EdgeProfile left_, right_;
   Peaks left_peaks_, right_peaks_;
   EdgePiece piece_;
@@ -210,9 +258,9 @@ class Gatherer {
 
 }  // namespace
 
-void GatherEdgeEvidence(const VerifyParams& params, const VerifyInput& input, const EdgeSamples& samples,
-                        EdgeEvidence& out) {
-  Gatherer(params, input).Run(samples, out);
+void GatherEdgeEvidence(const VerifyParams& params, const VerifyInput& input, const EdgeBits& outline,
+                        const EdgeSamples& samples, EdgeEvidence& out) {
+  Gatherer(params, input, outline).Run(samples, out);
 }
 
 }  // namespace wirepose

@@ -1,6 +1,7 @@
 #include "stages/surface_evidence.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace wirepose {
 namespace {
@@ -27,7 +28,7 @@ bool IsInside(const SurfaceMap& s, int i, int j) {
 void GatherSurfaceEvidence(const SurfaceEvidenceParams& params, const DisparityMap& scene, const SurfaceMap& surface,
                            SurfaceEvidence& out) {
   constexpr int kScale = SurfaceMap::kScale;
-  float on = 0, through = 0, drop = 0, level = 0, beside_before = 0;
+  float on = 0, through = 0, drop = 0, level = 0, beside_before = 0, misfit = 0;
   for (int j = surface.y0; j < surface.y1; ++j) {
     for (int i = surface.x0; i < surface.x1; ++i) {
       const float seen = scene.At(kScale * i, kScale * j);
@@ -36,7 +37,9 @@ void GatherSurfaceEvidence(const SurfaceEvidenceParams& params, const DisparityM
         if (!IsInside(surface, i, j)) continue;
         const float expected = surface.At(i, j);
         const float tolerance = std::max(params.tolerance_px, params.tolerance_share * expected);
-        if (seen <= expected + tolerance) (seen < expected - tolerance ? through : on) += 1;
+        if (seen > expected + tolerance) continue;  // hidden by something nearer
+        (seen < expected - tolerance ? through : on) += 1;
+        if (seen >= expected - tolerance) misfit += std::abs(seen - expected) / tolerance;
         continue;
       }
       const float expected = Nearest(surface, i, j, 2);
@@ -47,7 +50,8 @@ void GatherSurfaceEvidence(const SurfaceEvidenceParams& params, const DisparityM
   }
   const float seen = on + through + params.prior_cells;
   const float beside = drop + level + beside_before + params.prior_cells;
-  out = {on / seen, through / seen, drop / beside, level / beside};
+  out = {on / seen, through / seen, drop / beside, level / beside,
+         (misfit + 0.5F * params.prior_cells) / (on + params.prior_cells)};
 }
 
 }  // namespace wirepose
