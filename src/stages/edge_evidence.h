@@ -6,10 +6,9 @@
 
 namespace wirepose {
 
-// All of `out` but `overrun`, from the model's visible edges at the pose, edge by edge. `outline`: the edges behind
-// which the background begins. O(samples * profile length).
-void GatherEdgeEvidence(const VerifyParams& params, const VerifyInput& input, const EdgeBits& outline,
-                        const EdgeSamples& samples, EdgeEvidence& out);
+// All of `out` but `overrun`, from the model's visible edges at the pose, edge by edge. O(samples * profile length).
+void GatherEdgeEvidence(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model,
+                        const Pose& T_camera_model, const EdgeSamples& samples, EdgeEvidence& out);
 
 }  // namespace wirepose
 

@@ -17,7 +17,7 @@ struct HypothesisParams {
   float min_depth_m = 0.15F;              // of the object's centre
   PoseScoreParams score;
   // Poses scored, for one model in one frame: bounds the time. Simulated kitchens need up to 1,100.
-  std::uint32_t max_steps = 8000;
+  std::uint32_t max_steps = 2'000;
 };
 
 // A pose in the rectified left frame with its coarse score.
