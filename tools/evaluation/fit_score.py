@@ -15,8 +15,8 @@ import pathlib
 import numpy as np
 
 DEPTH = 4
-ROUNDS = 120
-RATE = 0.1
+ROUNDS = 200
+RATE = 0.06
 BINS = 24
 RIDGE = 3.0
 RISING = {'visible_px', 'inside', 'support', 'sharp', 'sharp_of_support', 'full_edges', 'weakest_edge', 'distinct',
