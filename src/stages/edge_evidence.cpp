@@ -62,7 +62,7 @@ class Gatherer {
     if (right) CollectPeaks(right_, in_.right_edges.threshold, right_peaks_);
     for (const float chance : kChances) sums.chance_hits += Find(chance, right).found() ? 1.0F : 0.0F;
     sums.chances += static_cast<float>(kChances.size());
-    sums.Add(Find(0, right), params_.sharp_offset_px);
+    sums.Add(Find(0, right), normal.x(), params_.sharp_offset_px);
     if (!right) return;
     sums.compared += 1;
     sums.likeness += Likeness();
@@ -91,14 +91,14 @@ class Gatherer {
       const float left_px = std::abs(l.offset_px - at);
       if (left_px > params_.max_offset_px || left_px >= best.worst_px) continue;
       if (!right) {
-        best = {l.offset_px - at, left_px, 0, l.gradient};
+        best = {l.offset_px - at, left_px, 0};
         continue;
       }
       for (const EdgePeak& r : right_peaks_) {
         const float worst_px = std::max(left_px, std::abs(r.offset_px - at));
         if (worst_px < std::min(best.worst_px, params_.max_offset_px) && (l.gradient > 0) == (r.gradient > 0) &&
             std::abs(l.offset_px - r.offset_px) < params_.max_difference_px) {
-          best = {l.offset_px - at, worst_px, l.offset_px - r.offset_px, l.gradient};
+          best = {l.offset_px - at, worst_px, l.offset_px - r.offset_px};
         }
       }
     }

@@ -37,7 +37,6 @@ class Summary {
       faces_[face].length_px += e.length_px;
     }
     (towards < 2 ? outline_ : inner_).Add(e);
-    steady_ += std::abs(e.gradient) * std::sqrt(Share(e.hits, e.gradient_squared));
     if (e.hits > 3) {
       variance_ += e.offset_squared - e.offset * e.offset / e.hits;
       spread_hits_ += e.hits;
@@ -55,9 +54,8 @@ class Summary {
     out.sharp = Share(all_.sharp, all_.samples);
     out.sharp_of_support = Share(all_.sharp, all_.hits);
     out.spread_px = spread_hits_ > 0 ? std::sqrt(std::max(0.0F, variance_ / spread_hits_)) : params_.max_offset_px;
-    out.parallax_px = all_.hits > 0 ? std::sqrt(all_.parallax_squared / all_.hits) : params_.max_offset_px;
+    out.parallax_px = Parallax();
     out.likeness = Share(all_.likeness, all_.compared);
-    out.steady = Share(steady_, all_.hits);
     out.full_edges = Share(full_edges_, edges_);
     out.weak_edges = Share(weak_edges_, edges_);
     out.weakest_edge = weakest_;
@@ -92,6 +90,14 @@ class Summary {
     }
   }
 
+  // Root mean square difference of both images' offsets that no common disparity explains: a rig or a model of a
+  // slightly wrong size shifts all edges alike.
+  [[nodiscard]] float Parallax() const {
+    if (all_.hits == 0) return params_.max_offset_px;
+    const float common = Share(all_.parallax_across * all_.parallax_across, all_.across_squared);
+    return std::sqrt(std::max(0.0F, all_.parallax_squared - common) / all_.hits);
+  }
+
   void WriteCorners(EdgeEvidence& out) const {
     float corners = 0, held = 0;
     for (const CornerSums& corner : corners_) {
@@ -100,17 +106,13 @@ class Summary {
       held += corner.held == corner.edges ? 1.0F : 0.0F;
     }
     out.corners = Share(held, corners);
-    out.held_corners = held;
   }
 
   void WriteFaces(EdgeEvidence& out) const {
     out.weakest_face = 1;
-    out.strongest_face = 0;
     for (const FaceSums& face : faces_) {
       if (face.length_px < 4 * params_.min_edge_px) continue;
-      const float support = Share(face.hits, face.samples);
-      out.weakest_face = std::min(out.weakest_face, support);
-      out.strongest_face = std::max(out.strongest_face, support);
+      out.weakest_face = std::min(out.weakest_face, Share(face.hits, face.samples));
     }
   }
 
@@ -118,7 +120,7 @@ class Summary {
   const PreparedModel& model_;
   std::array<bool, kMaxModelFaces> towards_{};
   EdgeSums all_, outline_, inner_;
-  float steady_ = 0, variance_ = 0, spread_hits_ = 0;
+  float variance_ = 0, spread_hits_ = 0;
   float edges_ = 0, full_edges_ = 0, weak_edges_ = 0, ends_ = 0, weakest_ = 1, dimmest_ = 1;
   std::array<CornerSums, kMaxModelVertices> corners_{};
   std::array<FaceSums, kMaxModelFaces> faces_{};

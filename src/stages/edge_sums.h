@@ -71,7 +71,6 @@ class EdgePiece {
 struct Support {
   float left_px = 0, worst_px = 1e9F;
   float parallax_px = 0;  // difference of the two images' offsets
-  float gradient = 0;     // of the left image along the normal, kGradientOne
   [[nodiscard]] bool found() const { return worst_px < 1e9F; }
 };
 
@@ -86,15 +85,16 @@ struct EndSums {
 // Sums over the samples of one model edge.
 struct EdgeSums {
   float length_px = 0, samples = 0, hits = 0, sharp = 0, chances = 0, chance_hits = 0;
-  float offset = 0, offset_squared = 0;         // of the hits in the left image, px
-  float parallax_squared = 0;                   // of the hits, px^2
-  float gradient = 0, gradient_squared = 0;     // of the hits in the left image, kGradientOne
+  float offset = 0, offset_squared = 0;  // of the hits in the left image, px
+  // Of the hits: products of the difference of both images' offsets and the part of a disparity that it would show.
+  float parallax_squared = 0, parallax_across = 0, across_squared = 0;
   float compared = 0, likeness = 0;             // samples seen in both images, and how much their profiles are alike
   float piece_px = 0, distinct = 0, clear = 0;  // of averaged pieces, weighted by their length
   EndSums first;                                // the samples next to the edge's first end
   std::uint32_t recent = 0;                     // bit k: the sample k before the newest was a hit
 
-  void Add(const Support& support, float sharp_offset_px) {
+  // `across`: x of the edge's unit normal, how much of a disparity its offsets show.
+  void Add(const Support& support, float across, float sharp_offset_px) {
     samples += 1;
     recent = 2 * recent + (support.found() ? 1U : 0U);
     if (!first.full()) {
@@ -103,9 +103,9 @@ struct EdgeSums {
     }
     if (!support.found()) return;
     hits += 1;
-    gradient += support.gradient;
-    gradient_squared += support.gradient * support.gradient;
     parallax_squared += support.parallax_px * support.parallax_px;
+    parallax_across += support.parallax_px * across;
+    across_squared += across * across;
     sharp += support.worst_px < sharp_offset_px ? 1.0F : 0.0F;
     offset += support.left_px;
     offset_squared += support.left_px * support.left_px;
@@ -124,6 +124,7 @@ struct EdgeSums {
   void Add(const EdgeSums& other) {
     samples += other.samples, hits += other.hits, sharp += other.sharp;
     parallax_squared += other.parallax_squared;
+    parallax_across += other.parallax_across, across_squared += other.across_squared;
     compared += other.compared, likeness += other.likeness;
     chances += other.chances, chance_hits += other.chance_hits;
     length_px += other.length_px, piece_px += other.piece_px, distinct += other.distinct, clear += other.clear;
