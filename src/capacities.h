@@ -29,12 +29,12 @@ inline constexpr std::size_t kMaxRowOffsets = 32;
 // Related pairs of image lines: 150 lines with depth make 11,000 pairs; only clutter of small tiles has more.
 inline constexpr std::size_t kMaxImageLinePairs = 6144;
 // Corresponding line sets kept per model, by rank: the paper's "small number".
-inline constexpr std::size_t kMaxCorrespondences = 1536;
+inline constexpr std::size_t kMaxCorrespondences = 4096;
 inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose
 // Pose hypotheses kept per model after the coarse score. Many of them are one pose.
 inline constexpr std::size_t kMaxHypotheses = 128;
 inline constexpr std::size_t kMaxCandidates = 16;    // corresponding line sets per model after duplicates are merged
-inline constexpr std::size_t kMaxRefined = 6;        // candidates of one model that are refined and verified
+inline constexpr std::size_t kMaxRefined = 8;        // candidates of one model that are refined and verified
 inline constexpr std::size_t kMaxVerified = 64;      // of all models, that compete for the image's edges
 inline constexpr std::size_t kMaxEdgeSamples = 512;  // points on visible edges of one pose; the step widens to fit
 

@@ -34,11 +34,20 @@ struct EdgeEvidence {
   float sharp = 0;             // share of samples with sharp support
   float sharp_of_support = 0;  // share of the supported ones that are sharp
   float spread_px = 0;         // standard deviation of the supporting offsets within an edge
+  float parallax_px = 0;       // rms difference of both images' offsets, without what a common disparity explains
+  float likeness = 0;          // correlation of both images' gradients across the edge
   float full_edges = 0;        // share of edges with support of more than four fifths
+  float weak_edges = 0;        // and of less than two fifths
   float weakest_edge = 0;      // lowest support of an edge
   float distinct = 0;          // how much averaged edges stand out from what is beside them, in both images
   float clear = 0;             // share of the length where they stand out by more than half
   float dimmest_edge = 0;      // lowest distinctness of an edge
+  float outline = 0;           // support of the edges behind which the background begins
+  float outline_distinct = 0;  // and how much they stand out
+  float inner_distinct = 0;    // how much the edges between two visible faces stand out
+  float ends = 0;              // share of edge ends next to which most samples have support
+  float corners = 0;           // share of corners all of whose edges have such ends
+  float weakest_face = 0;      // lowest support of the edges around a visible face
   float overrun = 0;           // share of edge ends beyond which the image edge goes on: clutter has no corners there
 };
 
@@ -52,7 +61,7 @@ struct Evidence {
   float uncertainty = 0;    // of the position by what the visible edges determine, over the diameter
 };
 
-inline constexpr std::size_t kEvidenceTerms = 22;
+inline constexpr std::size_t kEvidenceTerms = 32;
 using EvidenceTerms = std::array<float, kEvidenceTerms>;
 
 // The terms in a fixed order, as the score reads them, and their names in that order.

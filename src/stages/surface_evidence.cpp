@@ -1,6 +1,7 @@
 #include "stages/surface_evidence.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace wirepose {
 namespace {
@@ -28,6 +29,7 @@ void GatherSurfaceEvidence(const SurfaceEvidenceParams& params, const DisparityM
                            SurfaceEvidence& out) {
   constexpr int kScale = SurfaceMap::kScale;
   float on = 0, through = 0, drop = 0, level = 0, beside_before = 0;
+  float off = 0, off_squared = 0;  // of the cells on the surface, in tolerances
   for (int j = surface.y0; j < surface.y1; ++j) {
     for (int i = surface.x0; i < surface.x1; ++i) {
       const float seen = scene.At(kScale * i, kScale * j);
@@ -36,7 +38,12 @@ void GatherSurfaceEvidence(const SurfaceEvidenceParams& params, const DisparityM
         if (!IsInside(surface, i, j)) continue;
         const float expected = surface.At(i, j);
         const float tolerance = std::max(params.tolerance_px, params.tolerance_share * expected);
-        if (seen <= expected + tolerance) (seen < expected - tolerance ? through : on) += 1;
+        if (seen > expected + tolerance) continue;  // hidden by something nearer
+        (seen < expected - tolerance ? through : on) += 1;
+        if (seen < expected - tolerance) continue;
+        const float distance = (seen - expected) / tolerance;
+        off += distance;
+        off_squared += distance * distance;
         continue;
       }
       const float expected = Nearest(surface, i, j, 2);
@@ -47,7 +54,10 @@ void GatherSurfaceEvidence(const SurfaceEvidenceParams& params, const DisparityM
   }
   const float seen = on + through + params.prior_cells;
   const float beside = drop + level + beside_before + params.prior_cells;
-  out = {on / seen, through / seen, drop / beside, level / beside};
+  // A uniform distribution within the tolerance has a variance of a third: as much as nothing known.
+  const float variance =
+      (off_squared - off * off / std::max(on, 1.0F) + params.prior_cells / 3) / (on + params.prior_cells);
+  out = {on / seen, through / seen, drop / beside, level / beside, std::sqrt(std::max(0.0F, variance))};
 }
 
 }  // namespace wirepose

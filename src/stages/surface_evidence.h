@@ -20,6 +20,7 @@ struct SurfaceEvidence {
   float through = 0;  // of the same: the scene is farther, one sees through where the object should be
   float drop = 0;     // around the silhouette: the scene falls back behind the object
   float level = 0;    // around the silhouette: the surface goes on, as on a picture of an object
+  float misfit = 0;   // standard deviation of the scene from the surface that it lies on, over the tolerance
 };
 
 // Compares the model's surface with the scene's inside the silhouette and 4 to 8 px around it. O(cells of the box).

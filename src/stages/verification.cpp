@@ -20,7 +20,7 @@ void GatherEvidence(const VerifyParams& params, const VerifyInput& in, const Pre
   SampleVisibleEdges(params.samples, in.camera, model, T, scratch.front, scratch.samples);
   RenderSurface(in.camera, model, T, scratch.surface);
   out.hidden = DropOccluded(params.occlusion, in.disparity, scratch.surface, scratch.samples);
-  GatherEdgeEvidence(params, in, scratch.samples, out.edges);
+  GatherEdgeEvidence(params, in, model, T, scratch.samples, out.edges);
   out.edges.overrun = OverrunShare(in.camera, in.left_edges, model, T, scratch.samples);
   GatherSurfaceEvidence(params.surface, in.disparity, scratch.surface, out.surface);
   out.disparity_px = MeanDisparity(scratch.samples);

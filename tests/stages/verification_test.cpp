@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "rendered_scene.h"
+#include "stages/edge_summary.h"
 
 namespace wirepose {
 namespace {
@@ -55,7 +56,75 @@ TEST_F(VerificationTest, RightPoseBeatsShiftedOnes) {
     EXPECT_LT(wrong.sharp, right.sharp - 0.2F);
     EXPECT_LE(wrong.full_edges, right.full_edges);
     EXPECT_LE(wrong.weakest_edge, right.weakest_edge);
+    EXPECT_LT(wrong.outline, right.outline);
+    EXPECT_LE(wrong.weakest_face, right.weakest_face);
+    EXPECT_LE(wrong.ends, right.ends);
+    EXPECT_LE(wrong.corners, right.corners);
   }
+}
+
+// Both images show the same beside a true edge.
+TEST_F(VerificationTest, TrueEdgesAreAlikeInBothImages) {
+  Random random(12);
+  const Pose T = testing::GoodView(random, *model_);
+  const RenderedScene scene = Show(T, sim::Texture::kLabel, 15);
+  const EdgeEvidence right = Gather(scene, T).edges;
+  EXPECT_GT(right.likeness, 0.6F);
+  double likeness = 0;
+  const int count = Cases(50);
+  for (int k = 0; k < count; ++k) {
+    const EdgeEvidence wrong =
+        Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1), random.Uniform(0.03, 0.1))).edges;
+    likeness += static_cast<double>(wrong.likeness);
+  }
+  EXPECT_LT(likeness / count, static_cast<double>(right.likeness) - 0.1);
+}
+
+// A box seen on three faces, of which one edge is missing and another held at one end only.
+TEST_F(VerificationTest, SummaryCountsEndsCornersAndFaces) {
+  Random random(13);
+  const Pose T = testing::GoodView(random, *model_);
+  const Vector3 eye = -(T.R.transpose() * T.t).cast<float>();
+  const ModelView& view = model_->view;
+  const auto towards = [&](std::uint16_t face) { return IsTowards(view.faces[face], eye); };
+  std::vector<EdgeSums> sums(kMaxModelEdges);
+  std::vector<std::size_t> inner;
+  for (std::size_t e = 0; e < view.edges.size(); ++e) {
+    const ModelEdge& edge = view.edges[e];
+    const int count = (towards(edge.face[0]) ? 1 : 0) + (towards(edge.face[1]) ? 1 : 0);
+    if (count == 0) continue;
+    if (count == 2) inner.push_back(e);
+    sums[e].length_px = 100;
+    for (int k = 0; k < 10; ++k) sums[e].Add({.left_px = 0, .worst_px = 0.1F}, 0.5F, 0.8F);
+  }
+  ASSERT_EQ(inner.size(), 3u);
+  EdgeEvidence all;
+  SummarizeEdges({}, *model_, T, sums, 900, all);
+  EXPECT_EQ(all.edges, 9);
+  EXPECT_FLOAT_EQ(all.ends, 1);
+  EXPECT_FLOAT_EQ(all.corners, 1);
+  EXPECT_FLOAT_EQ(all.weakest_face, 1);
+  EXPECT_FLOAT_EQ(all.inside, 1);
+
+  EdgeSums missing;
+  missing.length_px = 100;
+  for (int k = 0; k < 10; ++k) missing.Add(Support{}, 0.5F, 0.8F);
+  sums[inner[0]] = missing;
+  EdgeSums half;
+  half.length_px = 100;
+  for (int k = 0; k < 10; ++k) half.Add(k < 5 ? Support{.left_px = 0, .worst_px = 0.1F} : Support{}, 0.5F, 0.8F);
+  sums[inner[1]] = half;
+  EdgeEvidence less;
+  SummarizeEdges({}, *model_, T, sums, 900, less);
+  EXPECT_FLOAT_EQ(less.ends, 15.0F / 18);
+  // The three inner edges meet in one corner; their other ends are corners of their own.
+  const bool half_holds_middle = view.edges[inner[1]].vertex[0] == view.edges[inner[2]].vertex[0] ||
+                                 view.edges[inner[1]].vertex[0] == view.edges[inner[2]].vertex[1];
+  EXPECT_FLOAT_EQ(less.corners, half_holds_middle ? 4.0F / 7 : 5.0F / 7);
+  EXPECT_FLOAT_EQ(less.outline, 1);
+  EXPECT_FLOAT_EQ(less.weakest_face, 2.5F / 4);
+  EXPECT_FLOAT_EQ(less.weak_edges, 1.0F / 9);
+  EXPECT_FLOAT_EQ(less.full_edges, 7.0F / 9);
 }
 
 // Support at every offset within 2.2 px counts, sharp support only at the edge itself.
