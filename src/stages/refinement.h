@@ -20,7 +20,7 @@ struct RefineParams {
   // Standard deviations that the covariance is made of: of a sample, of an edge, of an image; and how much of the
   // observed scatter of the edges' mean residuals (a variance) is added to that of an edge.
   float noise_px = 0.4F, edge_px = 0.6F, image_px = 0.2F, scatter_gain = 6;
-  SurfaceFitParams surface;
+  SurfaceFitParams surface{};
 };
 
 // Smoothed rectified images, and the surfaces between the edges where they are to be used.
