@@ -139,8 +139,19 @@ double RobustScale(const SurfaceFitParams& params, const SurfaceRows& rows) {
   return std::max(static_cast<double>(params.sigma_floor_px), 1.4826 * static_cast<double>(*middle));
 }
 
-// Weight of a row in the normal matrix.
-double Weight(const SurfaceRow& row, double unit_variance) { return row.weight * row.share * unit_variance; }
+// Minimises sum w (r - J x - b)^2 / noise^2 + b^2 / face^2 over the bias b of the face.
+void EliminateBias(const SurfaceFitParams& params, std::size_t begin, std::size_t end, SurfaceRows& rows) {
+  Vector6d sum = Vector6d::Zero();
+  double weight = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    sum += rows[i].weight * rows[i].J;
+    weight += rows[i].weight;
+  }
+  const double noise = Squared(params.noise_px);
+  const double face = Squared(params.face_px) + rows[begin].sigma * rows[begin].sigma;
+  const Vector6d bias = sum / (weight + noise / face);
+  for (std::size_t i = begin; i < end; ++i) rows[i].pull = rows[i].weight / noise * (rows[i].J - bias);
+}
 
 }  // namespace
 
@@ -187,19 +198,14 @@ void MeasureSurface(const SurfaceFitParams& params, const RectifiedCamera& camer
     const double k = 1 / (1 + r * r);
     row.weight = k * k;
   }
-  // All rows of a face together weigh as much as its mean is worth.
-  ForEachFace(out, [&](std::size_t begin, std::size_t end) {
-    const double shared = Squared(params.face_px) + out[begin].sigma * out[begin].sigma;
-    const double share = 1 / (Squared(params.noise_px) + static_cast<double>(end - begin) * shared);
-    for (std::size_t i = begin; i < end; ++i) out[i].share = share;
-  });
+  ForEachFace(out, [&](std::size_t begin, std::size_t end) { EliminateBias(params, begin, end, out); });
 }
 
 void AddSurface(const SurfaceRows& rows, double unit_variance, Matrix6d& H, Vector6d& g) {
   for (const SurfaceRow& row : rows) {
-    const double w = Weight(row, unit_variance);
-    H += w * row.J * row.J.transpose();
-    g += w * row.residual * row.J;
+    const Vector6d pull = unit_variance * row.pull;
+    H += pull * row.J.transpose();
+    g += row.residual * pull;
   }
 }
 
@@ -211,13 +217,12 @@ Matrix6d SpreadOfSurface(const SurfaceFitParams& params, const SurfaceRows& rows
     Vector6d face = Vector6d::Zero();
     double weight = 0, mean = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      const double w = Weight(rows[i], unit_variance);
-      const Vector6d g = w * rows[i].J;
-      spread += Squared(params.noise_px) * g * g.transpose();
-      face += g;
-      common += rows[i].sigma * g;
-      weight += w;
-      mean += w * rows[i].residual;
+      const Vector6d pull = unit_variance * rows[i].pull;
+      spread += Squared(params.noise_px) * pull * pull.transpose();
+      face += pull;
+      common += rows[i].sigma * pull;
+      weight += rows[i].weight;
+      mean += rows[i].weight * rows[i].residual;
     }
     if (weight <= 0) return;
     faces += face * face.transpose();

@@ -20,10 +20,10 @@ struct SurfaceFitParams {
   // Measurements that are off by more than this many pixels and this share are of another surface.
   float max_residual_px = 5, max_residual_share = 0.06F;
   float sigma_floor_px = 0.2F;
-  // Standard deviations of disparity that weights and covariance are made of: of a sample, of a face (all of whose
-  // samples share it), of all faces together (also as a share), and how much of the observed scatter of the faces' mean
-  // residuals (a variance) is added to that of a face.
-  float noise_px = 0.4F, face_px = 0.3F, common_px = 0.2F, common_share = 0.003F, scatter_gain = 2;
+  // Standard deviations of disparity that weights and covariance are made of: of a sample (twice what is seen of one
+  // sample, since neighbours share errors), of a face (all of whose samples share it), of all faces together (also as a
+  // share), and how much of the observed scatter of the faces' mean residuals (a variance) is added to that of a face.
+  float noise_px = 0.8F, face_px = 0.3F, common_px = 0.2F, common_share = 0.003F, scatter_gain = 2;
 };
 
 // A point on a visible face, where the map has a value of its own.
@@ -37,8 +37,8 @@ using SurfaceSamples = FixedVector<SurfaceSample, kMaxSurfaceSamples>;
 struct SurfaceRow {
   Vector6d J;
   double residual = 0;  // px, measured minus predicted
+  Vector6d pull;        // what the normal equations' right side gets of each px of the residual
   double weight = 0;    // robust, 0..1
-  double share = 0;     // of its information that is its own and not its face's
   double sigma = 1;     // px, of what all faces have in common
   std::uint16_t face = 0;
 };
@@ -50,8 +50,10 @@ void SampleSurface(const SurfaceFitParams& params, const RectifiedCamera& camera
                    const Pose& T_camera_model, const EdgeSamples& edges, FrontTriangles& front, SurfaceSamples& out);
 
 // Point-to-plane residuals (Chen & Medioni 1992) in disparity, where their errors are nearly Gaussian: what the map
-// shows at each sample's pixel against the disparity of the sample's face there, with Geman-McClure weights. Rows
-// follow each other by face. O(samples).
+// shows at each sample's pixel against the disparity of the sample's face there, with Geman-McClure weights. What the
+// samples of a face have in common may be the sensor's bias: each face has one as an unknown of its own, with a prior,
+// which is eliminated. So a face's tilt counts for much, its distance for what the bias allows. Rows follow each other
+// by face. O(samples).
 void MeasureSurface(const SurfaceFitParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                     const Pose& T_camera_model, const DisparityMap& map, const SurfaceSamples& samples,
                     SurfaceRows& out);
