@@ -33,10 +33,11 @@ inline constexpr std::size_t kMaxCorrespondences = 4096;
 inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose
 // Pose hypotheses kept per model after the coarse score. Many of them are one pose.
 inline constexpr std::size_t kMaxHypotheses = 128;
-inline constexpr std::size_t kMaxCandidates = 16;    // corresponding line sets per model after duplicates are merged
-inline constexpr std::size_t kMaxRefined = 8;        // candidates of one model that are refined and verified
-inline constexpr std::size_t kMaxVerified = 64;      // of all models, that compete for the image's edges
-inline constexpr std::size_t kMaxEdgeSamples = 512;  // points on visible edges of one pose; the step widens to fit
+inline constexpr std::size_t kMaxCandidates = 16;       // corresponding line sets per model after duplicates are merged
+inline constexpr std::size_t kMaxRefined = 8;           // candidates of one model that are refined and verified
+inline constexpr std::size_t kMaxVerified = 64;         // of all models, that compete for the image's edges
+inline constexpr std::size_t kMaxEdgeSamples = 512;     // points on visible edges of one pose; the step widens to fit
+inline constexpr std::size_t kMaxSurfaceSamples = 192;  // points on visible faces of one pose; the step widens to fit
 
 // --- Models --------------------------------------------------------------------------------------------------------
 inline constexpr std::size_t kMaxModels = 16;          // objects searched for at once (memory budget is stated for 16)

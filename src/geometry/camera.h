@@ -20,6 +20,12 @@ struct StereoCalibration {
   int width = 0, height = 0;
 };
 
+// One camera whose images come with a registered depth image: every pixel's z, seen through the same lens.
+struct DepthCalibration {
+  CameraIntrinsics camera;
+  int width = 0, height = 0;
+};
+
 // Rectified pair: equal pinholes, rows aligned, x_right = x_left - (baseline, 0, 0).
 // A point (x, y, z) [m] appears at u = f x/z + cx, v = f y/z + cy in the left image and at u - f*baseline/z in the
 // right one: its disparity. One principal point for both, so that disparity 0 is infinity.
@@ -27,6 +33,9 @@ struct RectifiedCamera {
   double f = 0, cx = 0, cy = 0;  // px
   double baseline = 0;           // m
   int width = 0, height = 0;
+  // False for a camera with depth: there is no right image, and the baseline is virtual. Depth is kept as the disparity
+  // that a right camera would see, so that all stages speak of one quantity.
+  bool has_right_image = true;
 
   [[nodiscard]] double DisparityOfDepth(double z) const { return f * baseline / z; }
   // (u, v, disparity) of a point in front of the camera (z > 0).

@@ -28,6 +28,18 @@ struct Line3 {
   [[nodiscard]] float Length() const { return (b - a).norm(); }
 };
 
+// Sets the end points and has_depth from the disparities; what is farther than a disparity of 1 px stays without depth.
+inline void PlaceInSpace(const RectifiedCamera& camera, Line3& line) {
+  if (!(line.disparity_a_px >= 1 && line.disparity_b_px >= 1)) return;
+  const auto point = [&](const Vector2& p, float d) -> Vector3 {
+    return camera.Triangulate(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(d))
+        .cast<float>();
+  };
+  line.a = point(line.segment.a, line.disparity_a_px);
+  line.b = point(line.segment.b, line.disparity_b_px);
+  line.has_depth = true;
+}
+
 }  // namespace wirepose
 
 #endif  // WIREPOSE_GEOMETRY_LINE3_H_

@@ -71,17 +71,43 @@ const char* Describe(RecognizerError error) {
       return "too many models; at most 16 are searched for at once";
     case RecognizerError::kDuplicateModel:
       return "two models have the same id; rebuild one with another --id";
+    case RecognizerError::kOtherCamera:
+      return "configured for the other kind of camera; call Configure with a stereo calibration before Process, with a "
+             "depth calibration before ProcessDepth";
+    case RecognizerError::kBadDepthUnit:
+      return "the unit of depth is not above 0 and at most 1 m; give metres a unit, 0.001 for millimetres";
   }
   return "?";
 }
 
+bool Recognizer::Fits(int width, int height) {
+  return width >= 64 && width <= kMaxImageWidth && height >= 64 && height <= kMaxImageHeight;
+}
+
 RecognizerError Recognizer::Configure(const StereoCalibration& calibration, const RecognizerParams& params) {
-  const bool fits = calibration.width >= 64 && calibration.width <= kMaxImageWidth && calibration.height >= 64 &&
-                    calibration.height <= kMaxImageHeight;
-  if (!fits) return RecognizerError::kImageTooLarge;
+  if (!Fits(calibration.width, calibration.height)) return RecognizerError::kImageTooLarge;
   if (!ComputeRectification(calibration, rectification_)) return RecognizerError::kBadCalibration;
   params_ = params;
   configured_ = true;
+  return RecognizerError::kOk;
+}
+
+RecognizerError Recognizer::Configure(const DepthCalibration& calibration, const RecognizerParams& params) {
+  if (!Fits(calibration.width, calibration.height)) return RecognizerError::kImageTooLarge;
+  if (!ComputeUndistortion(calibration, rectification_)) return RecognizerError::kBadCalibration;
+  params_ = params;
+  configured_ = true;
+  return RecognizerError::kOk;
+}
+
+RecognizerError Recognizer::CheckImages(bool stereo, std::initializer_list<ImageView> images) const {
+  if (!configured_) return RecognizerError::kNotConfigured;
+  if (camera().has_right_image != stereo) return RecognizerError::kOtherCamera;
+  for (const ImageView& image : images) {
+    if (image.width != camera().width || image.height != camera().height || image.data == nullptr) {
+      return RecognizerError::kImageSizeMismatch;
+    }
+  }
   return RecognizerError::kOk;
 }
 
@@ -115,21 +141,34 @@ std::span<const Candidate> Recognizer::candidates() const { return candidates_.i
 RecognizerError Recognizer::Process(ImageView left, ImageView right, StageObserver* observer,
                                     RecognitionResult& result) {
   result = {};
-  if (!configured_) return RecognizerError::kNotConfigured;
-  for (const ImageView& image : {left, right}) {
-    if (image.width != camera().width || image.height != camera().height || image.data == nullptr) {
-      return RecognizerError::kImageSizeMismatch;
-    }
-  }
+  if (const RecognizerError error = CheckImages(true, {left, right}); error != RecognizerError::kOk) return error;
   StageTimer timer(observer);
   FindFeatures(left, right, timer, result.statistics);
+  Recognize(timer, result);
+  return RecognizerError::kOk;
+}
+
+RecognizerError Recognizer::ProcessDepth(ImageView image, const DepthView& depth, StageObserver* observer,
+                                         RecognitionResult& result) {
+  result = {};
+  if (const RecognizerError error = CheckImages(false, {image}); error != RecognizerError::kOk) return error;
+  if (depth.pixels.width != image.width || depth.pixels.height != image.height || depth.pixels.data == nullptr) {
+    return RecognizerError::kImageSizeMismatch;
+  }
+  if (!(depth.unit_m > 0 && depth.unit_m <= 1)) return RecognizerError::kBadDepthUnit;
+  StageTimer timer(observer);
+  FindFeatures(image, depth, timer, result.statistics);
+  Recognize(timer, result);
+  return RecognizerError::kOk;
+}
+
+void Recognizer::Recognize(StageTimer& timer, RecognitionResult& result) {
   candidates_.clear();
   for (std::size_t m = 0; m < models_.size(); ++m) {
     if (Searched(m)) MatchModel(m, timer, result);
   }
   Report(result);
   timer.Done(Stage::kSelect);
-  return RecognizerError::kOk;
 }
 
 void Recognizer::KeepSegmentsInRegion() {
@@ -161,14 +200,43 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
   timer.Done(Stage::kRectify);
 
   FindEdges(right_rectified_, rectification_.right, right_smooth_, right_edges_, nullptr, statistics.edge_pixels);
-  FindEdges(left_rectified_, rectification_.left, left_smooth_, left_edges_, &left_segments_, statistics.edge_pixels);
+  FindLeftEdges(statistics);
   FindCorners(params_.row_offsets, left_smooth_, width, height, left_segments_, corners_);
   if (!region_.Whole()) KeepSegmentsInRegion();
   timer.Done(Stage::kSegments);
 
   MatchEyes();
   timer.Done(Stage::kStereoLines);
+  RelateLines(timer, statistics);
+}
 
+// One image sees no right edges: an empty map contains no place, so that nobody finds anything there or misses it.
+void Recognizer::FindFeatures(ImageView image, const DepthView& depth, StageTimer& timer,
+                              RecognitionStatistics& statistics) {
+  RectifyImage(image, rectification_.left, {left_rectified_.data(), camera().width, camera().height, kMaxImageWidth});
+  timer.Done(Stage::kRectify);
+
+  right_edges_.width = right_edges_.height = 0;
+  right_edges_.threshold = right_edges_.background = 0;
+  row_offsets_.clear();
+  FindLeftEdges(statistics);
+  if (!region_.Whole()) KeepSegmentsInRegion();
+  timer.Done(Stage::kSegments);
+
+  Arena arena(stage_scratch_);
+  auto& disparities = *arena.Create<DisparityImage>();
+  FillDisparityImage(params_.depth_image, camera(), rectification_.left, depth, disparities);
+  ShrinkDisparity(disparities, disparity_);
+  PlaceLines(params_.depth_lines, camera(), disparities, left_segments_, lines_);
+  timer.Done(Stage::kStereoLines);
+  RelateLines(timer, statistics);
+}
+
+void Recognizer::FindLeftEdges(RecognitionStatistics& statistics) {
+  FindEdges(left_rectified_, rectification_.left, left_smooth_, left_edges_, &left_segments_, statistics.edge_pixels);
+}
+
+void Recognizer::RelateLines(StageTimer& timer, RecognitionStatistics& statistics) {
   FindLineSets(params_.line_sets, camera(), lines_, line_sets_);
   timer.Done(Stage::kLineSets);
 
@@ -213,7 +281,7 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   timer.Done(Stage::kHypotheses);
 
   FixedVector<Candidate, kMaxRefined> refined;
-  const SceneImages images{camera(), left_smooth_, right_smooth_};
+  const SceneImages images = ImagesFor(params_.refine);
   for (std::size_t i = 0; i < std::min(sets_.size(), kMaxRefined); ++i) {
     const CorrespondingSet& set = sets_[i];
     Candidate candidate;
@@ -235,11 +303,16 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   timer.Done(Stage::kVerify);
 }
 
+SceneImages Recognizer::ImagesFor(const RefineParams& params) const {
+  const bool surface = params.surface.in_stereo || !camera().has_right_image;
+  return {camera(), left_smooth_, right_smooth_, surface ? &disparity_ : nullptr};
+}
+
 // The last of the adjustment, with more samples and iterations; what it cannot improve stays.
 void Recognizer::Polish(Candidate& candidate) {
   RefinedPose polished;
-  RefinePose(params_.polish, {camera(), left_smooth_, right_smooth_}, models_[candidate.model],
-             candidate.pose.T_camera_model, refine_scratch_, polished);
+  RefinePose(params_.polish, ImagesFor(params_.polish), models_[candidate.model], candidate.pose.T_camera_model,
+             refine_scratch_, polished);
   if (polished.ok) candidate.pose = polished;
 }
 

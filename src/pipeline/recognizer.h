@@ -1,4 +1,4 @@
-// The recognizer: a stereo pair in, known objects with their poses out.
+// The recognizer: a stereo pair, or an image with its depth, in; known objects with their poses out.
 #ifndef WIREPOSE_PIPELINE_RECOGNIZER_H_
 #define WIREPOSE_PIPELINE_RECOGNIZER_H_
 
@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 
 #include "base/fixed_vector.h"
@@ -15,6 +16,8 @@
 #include "model/prepared_model.h"
 #include "pipeline/recognition.h"
 #include "stages/correspondences.h"
+#include "stages/depth_lines.h"
+#include "stages/disparity_image.h"
 #include "stages/disparity_map.h"
 #include "stages/edge_image.h"
 #include "stages/edge_map.h"
@@ -41,6 +44,8 @@ enum class [[nodiscard]] RecognizerError : std::uint8_t{
     kImageSizeMismatch,  // an image that is not of the calibrated size
     kTooManyModels,      // more than kMaxModels
     kDuplicateModel,     // two models of one id
+    kOtherCamera,        // Process after Configure for a camera with depth, or ProcessDepth after one for a stereo pair
+    kBadDepthUnit,       // metres a unit of depth: not in (0, 1]
 };
 
 // One line for people: what is wrong and what to do.
@@ -66,6 +71,8 @@ struct RecognizerParams {
   StereoLineParams stereo;
   DisparityMapParams disparity;
   RowOffsetParams row_offsets;
+  DisparityImageParams depth_image;
+  DepthLineParams depth_lines;
   LineSetParams line_sets;
   CorrespondenceParams correspondences;
   HypothesisParams hypotheses;
@@ -102,6 +109,9 @@ class Recognizer {
   // Computes the rectification. Keeps the models. Any previous calibration is replaced; on error nothing changes.
   RecognizerError Configure(const StereoCalibration& calibration, const RecognizerParams& params = {});
 
+  // The same for one camera with registered depth. kBadCalibration and kImageTooLarge as above.
+  RecognizerError Configure(const DepthCalibration& calibration, const RecognizerParams& params = {});
+
   // Adds an object to search for. The bytes behind the view must stay unchanged until ClearModels.
   RecognizerError AddModel(const ModelView& model);
   void ClearModels();
@@ -120,13 +130,21 @@ class Recognizer {
   // has a compile-time bound; a search that stops at its bound sets `budget_hit`.
   RecognizerError Process(ImageView left, ImageView right, StageObserver* observer, RecognitionResult& result);
 
+  // The same in an image with its depth: lines get theirs from the surfaces beside them instead of a second image, and
+  // what a second image would say is left open. Poses are in the camera's frame.
+  RecognizerError ProcessDepth(ImageView image, const DepthView& depth, StageObserver* observer,
+                               RecognitionResult& result);
+
   // The rectified pair's camera and the rotation into it: p_rectified = T_rectified_raw * p_raw (rotation only).
   [[nodiscard]] const RectifiedCamera& camera() const { return rectification_.camera; }
   [[nodiscard]] const Pose& T_rectified_raw() const { return rectification_.T_rectified_raw; }
 
   // Intermediates of the last Process, for overlays and tests. Rectified left frame; valid until the next call.
   [[nodiscard]] ImageView left_rectified() const { return View(left_rectified_); }
-  [[nodiscard]] ImageView right_rectified() const { return View(right_rectified_); }
+  // Without pixels when there is no right camera; then `left` is the only one.
+  [[nodiscard]] ImageView right_rectified() const {
+    return camera().has_right_image ? View(right_rectified_) : ImageView{};
+  }
   [[nodiscard]] const DisparityMap& disparity_map() const { return disparity_; }
   [[nodiscard]] std::span<const Segment2> left_segments() const {
     return {left_segments_.items.begin(), left_segments_.items.end()};
@@ -156,7 +174,16 @@ class Recognizer {
   [[nodiscard]] bool Searched(std::size_t m) const { return ((searched_ >> m) & 1U) != 0; }
   void KeepSegmentsInRegion();
   void MatchEyes();
+  // The shared beginning of both Configure: the size, and of both Process: calibration, kind of camera and size.
+  static bool Fits(int width, int height);
+  [[nodiscard]] RecognizerError CheckImages(bool stereo, std::initializer_list<ImageView> images) const;
   void FindFeatures(ImageView left, ImageView right, StageTimer& timer, RecognitionStatistics& statistics);
+  void FindFeatures(ImageView image, const DepthView& depth, StageTimer& timer, RecognitionStatistics& statistics);
+  void FindLeftEdges(RecognitionStatistics& statistics);
+  // From lines with depth on, for whichever camera.
+  void RelateLines(StageTimer& timer, RecognitionStatistics& statistics);
+  void Recognize(StageTimer& timer, RecognitionResult& result);
+  [[nodiscard]] SceneImages ImagesFor(const RefineParams& params) const;
   void MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result);
   // Also counts the edge pixels into `pixels`. Only the left eye's edges become segments (`segments` not null).
   void FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
@@ -194,9 +221,10 @@ class Recognizer {
 
   SegmentScratch segment_scratch_;
   StereoScratch stereo_scratch_;
-  // Of the stage at work: an eye's edge image, then the rows of the disparity map, then the costs of a corner.
-  alignas(EdgeImage) alignas(
-      DisparityScratch) std::array<std::byte, std::max(sizeof(EdgeImage), sizeof(DisparityScratch))> stage_scratch_;
+  // Of the stage at work: an eye's edge image, then the rows of the disparity map or the depth of every pixel, then the
+  // costs of a corner.
+  alignas(EdgeImage) alignas(DisparityScratch) alignas(DisparityImage) std::array<
+      std::byte, std::max({sizeof(EdgeImage), sizeof(DisparityScratch), sizeof(DisparityImage)})> stage_scratch_;
   static_assert(sizeof(RowOffsetScratch) <= sizeof(EdgeImage) && alignof(RowOffsetScratch) <= alignof(EdgeImage));
   RefineScratch refine_scratch_;
   VerifyScratch verify_scratch_;

@@ -54,8 +54,8 @@ class Gatherer {
     if (!left_.Read(in_.left_smooth, in_.camera.width, in_.camera.height, s.left, normal, kEdgeRange)) return;
     const Vector2 right_at(s.left.x() - s.disparity, s.left.y());
     const Vector2 right_normal(-s.tangent_right.y(), s.tangent_right.x());
-    const bool right =
-        right_.Read(in_.right_smooth, in_.camera.width, in_.camera.height, right_at, right_normal, kEdgeRange);
+    const bool right = in_.camera.has_right_image && right_.Read(in_.right_smooth, in_.camera.width, in_.camera.height,
+                                                                 right_at, right_normal, kEdgeRange);
     piece_.Add(left_, right ? &right_ : nullptr, s.weight_px);
     CollectPeaks(left_, in_.left_edges.threshold, left_peaks_);
     right_peaks_.clear();

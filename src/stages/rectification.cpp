@@ -226,6 +226,43 @@ bool ComputeRectification(const StereoCalibration& calibration, Rectification& o
   return true;
 }
 
+bool ComputeUndistortion(const DepthCalibration& calibration, Rectification& out) {
+  const CameraIntrinsics& raw = calibration.camera;
+  if (!IsUsable(raw)) return false;
+  RectifiedCamera camera;
+  camera.width = calibration.width;
+  camera.height = calibration.height;
+  camera.has_right_image = false;
+  camera.baseline = kVirtualBaselineM;
+  camera.f = 0.5 * (raw.fx + raw.fy);
+  // The middle of the image stays where it is.
+  const double u0 = 0.5 * (calibration.width - 1);
+  const double v0 = 0.5 * (calibration.height - 1);
+  const Vector3d middle = RayOfPixel(raw, u0, v0);
+  camera.cx = u0 - camera.f * middle.x();
+  camera.cy = v0 - camera.f * middle.y();
+  if (!std::isfinite(camera.cx) || !std::isfinite(camera.cy)) return false;
+  out.camera = camera;
+  out.T_rectified_raw = {};
+  FillMap(raw, Matrix3d::Identity(), camera, out.left);
+  FillValid(camera, out.left);
+  out.right.valid.fill({});
+  return true;
+}
+
+void RectifyDepth(BasicImageView<const std::uint16_t> raw, const RectificationMap& map, int width, int height,
+                  std::uint16_t* out) {
+  for (int y = 0; y < height; ++y) {
+    const auto [begin, end] = map.valid[static_cast<std::size_t>(y)];
+    std::uint16_t* row = out + static_cast<std::ptrdiff_t>(y) * kMaxImageWidth;
+    std::fill(row, row + width, std::uint16_t{0});
+    ForEachPixel(map, y, width, [&, first = begin, last = end](int x, std::int32_t u, std::int32_t v) {
+      if (x < first || x >= last) return;
+      row[x] = raw(std::min((u + 32768) >> 16, raw.width - 1), std::min((v + 32768) >> 16, raw.height - 1));
+    });
+  }
+}
+
 void RectifyImage(ImageView raw, const RectificationMap& map, MutableImageView out) {
   RowScratch scratch;
   for (int y = 0; y < out.height; ++y) {

@@ -41,9 +41,23 @@ struct Rectification {
 // apart.
 [[nodiscard]] bool ComputeRectification(const StereoCalibration& calibration, Rectification& out);
 
+// Virtual baseline of a camera with depth [m]: with the usual focal lengths f * baseline is that of a stereo rig, and
+// so is the meaning of every threshold in pixels of disparity.
+inline constexpr double kVirtualBaselineM = 0.1;
+
+// The same for one camera with registered depth: the lens distortion is removed, the camera keeps its orientation
+// (T_rectified_raw is the identity). An image without distortion and with equal focal lengths stays as it is. The right
+// map sees nothing. False when a focal length is not positive.
+[[nodiscard]] bool ComputeUndistortion(const DepthCalibration& calibration, Rectification& out);
+
 // Resamples `raw` bilinearly into `out`; both of the calibrated size. Pixels outside the row's valid interval repeat
 // its nearest valid pixel. Integer arithmetic only. O(pixels).
 void RectifyImage(ImageView raw, const RectificationMap& map, MutableImageView out);
+
+// Takes the nearest raw pixel of each rectified one: for depth, whose values must not be mixed across an edge. `out`
+// has stride kMaxImageWidth; pixels outside the row's valid interval get 0. O(pixels).
+void RectifyDepth(BasicImageView<const std::uint16_t> raw, const RectificationMap& map, int width, int height,
+                  std::uint16_t* out);
 
 // Brown-Conrady: normalised image point to raw pixel. Public for tests.
 Eigen::Vector2d DistortAndProject(const CameraIntrinsics& camera, double x, double y);

@@ -49,8 +49,7 @@ class Refiner {
     out = {};
     out.T_camera_model = start;
     for (int i = 0; i < params_.iterations; ++i) {
-      if (i == 0 || i == params_.iterations / 2)
-        SampleVisibleEdges(params_.samples, images_.camera, model_, T, scratch_.front, scratch_.samples);
+      if (i == 0 || i == params_.iterations / 2) Sample(T);
       const float share = static_cast<float>(i) / static_cast<float>(std::max(1, params_.iterations - 1));
       // Halves early: the first iterations bring most edges close.
       const float range = params_.first_range_px + (params_.last_range_px - params_.first_range_px) * std::sqrt(share);
@@ -67,7 +66,20 @@ class Refiner {
   }
 
  private:
+  void Sample(const Pose& T) {
+    SampleVisibleEdges(params_.samples, images_.camera, model_, T, scratch_.front, scratch_.samples);
+    scratch_.surface_samples.clear();
+    if (images_.surface == nullptr) return;
+    SampleSurface(params_.surface, images_.camera, model_, T, scratch_.samples, scratch_.front,
+                  scratch_.surface_samples);
+  }
+
   void Measure(const Pose& T, int range) {
+    scratch_.surface_rows.clear();
+    if (images_.surface != nullptr) {
+      MeasureSurface(params_.surface, images_.camera, model_, T, *images_.surface, scratch_.surface_samples,
+                     scratch_.surface_rows);
+    }
     rows_.clear();
     found_.fill(0);
     sampled_.fill(0);
@@ -75,6 +87,7 @@ class Refiner {
       const Vector3d p = T.R * s.point.cast<double>();
       const Vector3d x = p + T.t;
       MeasureIn(images_.left, 0, s.tangent, p, x, range, s.edge);
+      if (!images_.camera.has_right_image) continue;
       MeasureIn(images_.right, images_.camera.baseline, s.tangent_right, p, x, range, s.edge);
     }
   }
@@ -127,6 +140,16 @@ class Refiner {
     return std::max(static_cast<double>(params_.sigma_floor_px), 1.4826 * static_cast<double>(*middle));
   }
 
+  // The variance for which a sample of an edge has weight 1: the samples of an edge share its error, so each of them is
+  // worth less than its noise says.
+  [[nodiscard]] double UnitVariance() const {
+    double edges = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) edges += i == 0 || rows_[i].edge != rows_[i - 1].edge ? 1 : 0;
+    const double per_edge = static_cast<double>(rows_.size()) / std::max(edges, 1.0);
+    const auto noise = static_cast<double>(params_.noise_px), edge = static_cast<double>(params_.edge_px);
+    return noise * noise + per_edge * edge * edge;
+  }
+
   bool Solve(Vector6d& twist) {
     sigma_ = Scale();
     H_.setZero();
@@ -138,6 +161,7 @@ class Refiner {
       H_ += row.weight * row.J.transpose() * row.J;
       g += row.weight * row.residual * row.J.transpose();
     }
+    AddSurface(scratch_.surface_rows, UnitVariance(), H_, g);
     // Levenberg damping: a thousandth of the mean information, so that what the edges do not tell stays put.
     Matrix6d damped = H_;
     for (int i = 0; i < 6; ++i) damped(i, i) *= 1.001;
@@ -207,6 +231,8 @@ class Refiner {
     const auto gain = static_cast<double>(params_.scatter_gain);
     spread += (floor * floor + gain * scatter / std::max(total, 1e-9)) * edges;
     spread += common * common * image * image.transpose();
+    if (!scratch_.surface_rows.empty())
+      spread += SpreadOfSurface(params_.surface, scratch_.surface_rows, UnitVariance());
     return spread;
   }
 

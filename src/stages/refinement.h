@@ -4,6 +4,7 @@
 
 #include "stages/edge_image.h"
 #include "stages/sample_edges.h"
+#include "stages/surface_fit.h"
 
 namespace wirepose {
 
@@ -19,18 +20,22 @@ struct RefineParams {
   // Standard deviations that the covariance is made of: of a sample, of an edge, of an image; and how much of the
   // observed scatter of the edges' mean residuals (a variance) is added to that of an edge.
   float noise_px = 0.4F, edge_px = 0.6F, image_px = 0.2F, scatter_gain = 6;
+  SurfaceFitParams surface{};
 };
 
-// Smoothed rectified images.
+// Smoothed rectified images, and the surfaces between the edges where they are to be used.
 struct SceneImages {
   const RectifiedCamera& camera;
   const SmoothPlane& left;
-  const SmoothPlane& right;
+  const SmoothPlane& right;               // not read when the camera has no right image
+  const DisparityMap* surface = nullptr;  // null: edges alone
 };
 
 struct RefineScratch {
   EdgeSamples samples;
   FrontTriangles front;
+  SurfaceSamples surface_samples;
+  SurfaceRows surface_rows;
 };
 
 struct RefinedPose {
@@ -45,9 +50,10 @@ struct RefinedPose {
 // Robust Gauss-Newton on SE(3). The closest image feature of eq. 11 is searched along the normal of the projected edge
 // (RAPiD: Harris & Stennett 1990) in both images; all offsets enter one 6x6 normal matrix with Geman-McClure weights.
 // The search range shrinks from iteration to iteration; hidden lines are found at the start and anew half way. Only
-// qualified features count at the end: edges of which a good share was found. The covariance is the sandwich estimate
-// for clustered errors (Liang & Zeger 1986): samples share the errors of their edge and of their image. `ok` is false,
-// and the pose the start, where fewer than 12 offsets are found or they do not determine it. No heap, no state.
+// qualified features count at the end: edges of which a good share was found. With a disparity map the visible faces
+// are drawn onto the measured surfaces by the same steps (surface_fit.h). The covariance is the sandwich estimate for
+// clustered errors (Liang & Zeger 1986): samples share the errors of their edge and of their image. `ok` is false, and
+// the pose the start, where fewer than 12 offsets are found or they do not determine it. No heap, no state.
 // O(iterations * samples * range).
 void RefinePose(const RefineParams& params, const SceneImages& images, const PreparedModel& model, const Pose& start,
                 RefineScratch& scratch, RefinedPose& out);

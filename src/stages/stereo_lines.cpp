@@ -396,14 +396,7 @@ void MatchLine(const StereoLineParams& params, const StereoInput& in, StereoScra
   } else {
     Refine(params, in, match, line);
   }
-  if (line.disparity_a_px < 1 || line.disparity_b_px < 1) return;
-  const auto point = [&](const Vector2& p, float d) -> Vector3 {
-    return in.camera.Triangulate(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(d))
-        .cast<float>();
-  };
-  line.a = point(line.segment.a, line.disparity_a_px);
-  line.b = point(line.segment.b, line.disparity_b_px);
-  line.has_depth = true;
+  PlaceInSpace(in.camera, line);
 }
 
 }  // namespace

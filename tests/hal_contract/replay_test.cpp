@@ -140,5 +140,13 @@ TEST_F(ReplayTest, MalformedDataIsNamed) {
   EXPECT_THAT(std::string(camera.detail()), HasSubstr("calib.yaml"));
 }
 
+TEST_F(ReplayTest, ADataSetOfOneCameraIsRefusedWithTheReason) {
+  fs::remove(root_ / "calib.yaml");
+  test::WriteText(root_ / "test/000001/scene_camera.json", "{}");
+  ReplayCamera camera(config_);
+  EXPECT_EQ(camera.Open(), CameraError::kBadData);
+  EXPECT_THAT(std::string(camera.detail()), HasSubstr("one camera with depth"));
+}
+
 }  // namespace
 }  // namespace wirepose::hal

@@ -31,5 +31,19 @@ TEST(RealData, FindsTheTeaBox) {
   EXPECT_GE(outcome->metrics.total.all.hits, 6);
 }
 
+// Seven images with depth of a toy cube whose faces show pictures and seams, on a desk full of things.
+TEST(RealData, FindsThePictureCubeByItsDepth) {
+  const fs::path folder = DataFolder() / "picture-cube-rgbd";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent; set WIREPOSE_REAL_DATA to the folder of real data";
+  evaluation::EvaluationOptions options;
+  options.dataset = folder;
+  const auto outcome = evaluation::Evaluate(options, {});
+  ASSERT_TRUE(outcome) << outcome.error();
+  EXPECT_EQ(outcome->frames.size(), 7U);
+  EXPECT_EQ(outcome->metrics.total.all.instances, 7);
+  EXPECT_GE(outcome->metrics.total.all.hits, 6);
+  EXPECT_LE(outcome->estimates.size(), 8U) << "false alarms";
+}
+
 }  // namespace
 }  // namespace wirepose

@@ -280,6 +280,78 @@ TEST_F(RecognizerTest, RefusesImagesOfAnotherSize) {
   }
 }
 
+// The left images of rendered kitchens with exact depth instead of the right ones.
+TEST_F(RecognizerTest, FindsObjectsByDepth) {
+  AddModels();
+  auto targets = sim::LoadTargetMeshes(WIREPOSE_MODELS);
+  ASSERT_TRUE(targets);
+  targets->resize(3);
+  const StereoCalibration rig = testing::GoldenCalibration();
+  ASSERT_EQ(TheRecognizer().Configure(DepthCalibration{rig.left, rig.width, rig.height}), RecognizerError::kOk);
+  EXPECT_FALSE(TheRecognizer().camera().has_right_image);
+  sim::ScenarioSpec spec;
+  spec.seed = 201;
+  spec.samples = 9;
+  spec.camera.calibration = rig;
+  const auto video = sim::ScenarioVideo::Create(spec, 0, *targets);
+  ASSERT_TRUE(video);
+  const sim::StereoShot shot = video->Shoot(0);
+  const dataset::DepthImage depth = sim::ToDepthImage(shot.truth);
+  const DepthView view{depth.view(), static_cast<float>(dataset::kDepthScale / 1000)};
+  ASSERT_EQ(TheRecognizer().ProcessDepth(shot.left.view(), view, nullptr, result_), RecognizerError::kOk);
+  EXPECT_EQ(TheRecognizer().right_rectified().data, nullptr);
+  EXPECT_TRUE(TheRecognizer().right_segments().empty());
+  int deep = 0, visible = 0, found = 0;
+  for (const Line3& line : TheRecognizer().lines()) deep += line.has_depth ? 1 : 0;
+  EXPECT_GT(2 * deep, static_cast<int>(TheRecognizer().lines().size()));
+  for (const sim::ObjectTruth& object : shot.truth.objects) {
+    if (object.visib_fract < 0.6) continue;
+    ++visible;
+    for (const Detection& d : result_.detections) {
+      if (static_cast<int>(d.model_id) != object.obj_id) continue;
+      const PreparedModel& model = TheRecognizer().prepared_model(static_cast<std::size_t>(object.obj_id - 1));
+      found += ErrorShare(model, d.T_camera_model, object.T_camera_object) < 0.1 ? 1 : 0;
+    }
+  }
+  printf("%d of %d visible objects found by depth\n", found, visible);
+  EXPECT_GE(2 * found, visible);
+}
+
+// A frame with depth between two pairs changes neither; each camera refuses the other's frames.
+TEST_F(RecognizerTest, CamerasDoNotMix) {
+  AddModels();
+  const StereoImages frame = testing::GoldenFrame(0);
+  const ImageView image = frame.left.view();
+  const std::vector<std::uint16_t> far(640 * 480, 900);
+  const DepthView depth{{far.data(), 640, 480, 640}, 0.001F};
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  const std::string before = testing::DumpAll(TheRecognizer(), result_);
+  EXPECT_EQ(TheRecognizer().ProcessDepth(image, depth, nullptr, result_), RecognizerError::kOtherCamera);
+
+  const StereoCalibration rig = testing::GoldenCalibration();
+  ASSERT_EQ(TheRecognizer().Configure(DepthCalibration{rig.left, rig.width, rig.height}), RecognizerError::kOk);
+  EXPECT_EQ(Process(frame, result_), RecognizerError::kOtherCamera);
+  DepthView bad = depth;
+  bad.pixels.height = 479;
+  EXPECT_EQ(TheRecognizer().ProcessDepth(image, bad, nullptr, result_), RecognizerError::kImageSizeMismatch);
+  for (const float unit : {0.0F, -0.001F, 2.0F, std::nanf("")}) {
+    bad = depth;
+    bad.unit_m = unit;
+    EXPECT_EQ(TheRecognizer().ProcessDepth(image, bad, nullptr, result_), RecognizerError::kBadDepthUnit);
+  }
+  ASSERT_EQ(TheRecognizer().ProcessDepth(image, depth, nullptr, result_), RecognizerError::kOk);
+  EXPECT_FALSE(TheRecognizer().lines().empty());
+  // Everything is on a wall: lines are 0.9 m away.
+  for (const Line3& line : TheRecognizer().lines()) {
+    if (!line.has_depth) continue;
+    EXPECT_NEAR(line.a.z(), 0.9F, 0.01F);
+  }
+
+  ASSERT_EQ(TheRecognizer().Configure(rig), RecognizerError::kOk);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), before);
+}
+
 TEST_F(RecognizerTest, RefusesModelsBeyondCapacityAndDuplicates) {
   ModelView view = models_[0].View();
   for (std::uint32_t id = 1; id <= kMaxModels; ++id) {
@@ -324,13 +396,13 @@ TEST(NewRecognizer, RefusesToProcess) {
 
 TEST(Messages, NameEveryError) {
   std::set<std::string> texts;
-  for (int e = 0; e <= static_cast<int>(RecognizerError::kDuplicateModel); ++e) {
+  for (int e = 0; e <= static_cast<int>(RecognizerError::kBadDepthUnit); ++e) {
     const std::string text = Describe(static_cast<RecognizerError>(e));
     EXPECT_EQ(text.find('\n'), std::string::npos);
     EXPECT_NE(text, "?");
     texts.insert(text);
   }
-  EXPECT_EQ(texts.size(), static_cast<std::size_t>(RecognizerError::kDuplicateModel) + 1);
+  EXPECT_EQ(texts.size(), static_cast<std::size_t>(RecognizerError::kBadDepthUnit) + 1);
 }
 
 // Everything is part of the object: the budget of the whole recognizer, 640 x 480 and 16 models.

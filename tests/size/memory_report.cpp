@@ -27,8 +27,11 @@ constexpr Member kMembers[] = {
     {"rectified images", kMaxPixels, 2, "kMaxPixels", "both eyes"},
     {"smoothed images", sizeof(SmoothPlane), 2, "kMaxPixels x 16 bit", "edges, sub-pixel profiles"},
     {"normalized images", sizeof(NormalizedPlane), 2, "kMaxPixels", "stereo lines, disparity map"},
-    {"stage scratch", std::max(sizeof(EdgeImage), sizeof(DisparityScratch)), 1, "kMaxPixels, kMaxRidgePixels",
-     "gradients and ridges of one eye at a time, then the rows of the disparity map, then the costs of a corner"},
+    {"stage scratch", std::max({sizeof(EdgeImage), sizeof(DisparityScratch), sizeof(DisparityImage)}), 1,
+     "kMaxPixels, kMaxRidgePixels",
+     "gradients and ridges of one eye at a time, then the rows of the disparity map or the depth of every pixel, then "
+     "the "
+     "costs of a corner"},
     {"disparity map", sizeof(DisparityMap), 1, "kMaxPixels / 4", "surfaces between the lines"},
     {"edge maps", sizeof(EdgeMap), 2, "kMaxPixels x 16 directions", "one look-up a sample when poses are scored"},
     {"2D segments", sizeof(Segments), 1, "kMaxSegments", "real kitchens show 150 to 300; the longest are kept"},
@@ -43,7 +46,8 @@ constexpr Member kMembers[] = {
     {"candidates", sizeof(Candidates), 1, "kMaxVerified", "of all models"},
     {"segment scratch", sizeof(SegmentScratch), 1, "kMaxChain", "one connected edge"},
     {"stereo scratch", sizeof(StereoScratch), 1, "kMaxStereoRows x kMaxDisparity", "costs of one line"},
-    {"refinement scratch", sizeof(RefineScratch), 1, "kMaxEdgeSamples, kMaxModelTriangles", "one pose"},
+    {"refinement scratch", sizeof(RefineScratch), 1, "kMaxEdgeSamples, kMaxModelTriangles, kMaxSurfaceSamples",
+     "one pose"},
     {"verification scratch", sizeof(VerifyScratch), 1, "kMaxEdgeSamples, kMaxModelTriangles", "one pose"},
     {"claim map", sizeof(ClaimMap), 1, "4 x 4 px blocks", "which detection owns an image edge"},
 };

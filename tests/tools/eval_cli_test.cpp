@@ -75,6 +75,22 @@ void WriteDataset(const fs::path& root) {
   WriteText(root / "models/models_info.json", R"({"1": {"diameter": 141.42}})");
 }
 
+// The same two frames as one camera with depth sees them: the noise 1 m away.
+void WriteDepthDataset(const fs::path& root) {
+  const std::vector<std::uint16_t> depth(kWidth * kHeight, 1000);
+  for (const char* name : {"000000.png", "000001.png"}) {
+    for (const char* folder : {"rgb", "depth"}) fs::create_directories(root / "test/000001" / folder);
+    ASSERT_TRUE(dataset::WriteGrayPng(root / "test/000001/rgb" / name, Noise(kWidth, kHeight, 1).view()));
+    ASSERT_TRUE(dataset::WriteDepthPng(root / "test/000001/depth" / name, {depth.data(), kWidth, kHeight, kWidth}));
+  }
+  const std::string K = R"({"cam_K": [150, 0, 80, 0, 150, 60, 0, 0, 1], "depth_scale": 1.0})";
+  const std::string box = R"([{"obj_id": 1, "cam_R_m2c": [1,0,0,0,1,0,0,0,1], "cam_t_m2c": [0,0,1000]}])";
+  WriteText(root / "test/000001/scene_camera.json", "{\"0\": " + K + ", \"1\": " + K + "}");
+  WriteText(root / "test/000001/scene_gt.json", "{\"0\": " + box + ", \"1\": " + box + "}");
+  WriteText(root / "models/obj_000001.ply", kBoxPly);
+  WriteText(root / "models/models_info.json", R"({"1": {"diameter": 141.42}})");
+}
+
 struct Outcome {
   int status = -1;
   std::string out, err;
@@ -170,6 +186,36 @@ TEST_P(BadInputTest, GivesOneLineAndAStatus) {
   EXPECT_THAT(run.err, HasSubstr(GetParam().message));
   EXPECT_THAT(run.err, ::testing::StartsWith("wirepose: "));
   EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+}
+
+TEST(EvalCommand, RecognizesADataSetOfOneCameraWithDepth) {
+  TemporaryFolder folder;
+  WriteDepthDataset(folder.path() / "set");
+  const Outcome run = Wirepose(folder.path(), "eval set --out r.csv --json m.json --report r.html --overlay o");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(TextOf(folder.path() / "m.json"));
+  EXPECT_EQ(json.at("frames"), 2);
+  EXPECT_EQ(json.at("total").at("instances"), 2);
+  EXPECT_TRUE(fs::exists(folder.path() / "r.html"));
+}
+
+TEST(EvalCommand, NamesBadDepthInOneLine) {
+  TemporaryFolder folder;
+  const fs::path set = folder.path() / "set", depth = set / "test/000001/depth/000001.png";
+  WriteDepthDataset(set);
+  const auto expect = [&](const std::string& message) {
+    const Outcome run = Wirepose(folder.path(), "eval set --out r.csv");
+    EXPECT_EQ(run.status, 1);
+    EXPECT_THAT(run.err, HasSubstr(message));
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+  };
+  const std::vector<std::uint16_t> pixels(80 * 60, 1000);
+  ASSERT_TRUE(dataset::WriteDepthPng(depth, {pixels.data(), 80, 60, 80}));
+  expect("depth/000001.png: 80x60 pixels, but the image it is registered to says 160x120");
+  ASSERT_TRUE(dataset::WriteGrayPng(depth, Noise(kWidth, kHeight, 1).view()));
+  expect("depth/000001.png");
+  fs::remove(depth);
+  expect("depth/000001.png");
 }
 
 std::function<void(const fs::path&)> Remove(const std::string& file) {

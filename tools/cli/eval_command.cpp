@@ -119,7 +119,9 @@ void RunEval(const EvalArguments& arguments) {
 void AddEvalCommand(CLI::App& app) {
   const auto arguments = std::make_shared<EvalArguments>();
   CLI::App* eval = app.add_subcommand("eval", "Run the recognizer over a data set and measure what it finds");
-  eval->add_option("dataset", arguments->options.dataset, "Folder with calib.yaml, models/ and test/")->required();
+  eval->add_option("dataset", arguments->options.dataset,
+                   "Folder with models/, test/ and, unless it is of one camera with depth, calib.yaml")
+      ->required();
   eval->add_option("--models", arguments->options.models,
                    "A .wpm file or a folder of them; without it DATASET/models/*.ply are compiled");
   eval->add_option("--objects", arguments->options.object_ids, "Search for these model ids only, as 1,3")

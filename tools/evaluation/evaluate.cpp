@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "hal/dataset/depth_dataset.h"
+
 namespace wirepose::evaluation {
 namespace {
 
@@ -20,9 +22,12 @@ Recognizer& TheRecognizer() {
 }
 
 Outcome SetUp(const dataset::Dataset& dataset, const ModelSet& models, Recognizer& recognizer) {
-  const RecognizerError error = recognizer.Configure(dataset.calibration);
+  const bool depth = dataset.depth_camera.has_value();
+  const RecognizerError error =
+      depth ? recognizer.Configure(*dataset.depth_camera) : recognizer.Configure(dataset.calibration);
   if (error != RecognizerError::kOk) {
-    return Error(fmt::format("{}: {}", (dataset.root / "calib.yaml").string(), Describe(error)));
+    const std::filesystem::path place = depth ? dataset.frames.front().left_path : dataset.root / "calib.yaml";
+    return Error(fmt::format("{}: {}", place.string(), Describe(error)));
   }
   recognizer.ClearModels();
   for (const ModelView& model : models.views) {
@@ -44,23 +49,50 @@ Outcome CheckIds(const ModelSet& models, const GroundTruth& truth, const std::fi
   return {};
 }
 
-Result<dataset::GrayImage, std::string> ReadImage(const std::filesystem::path& file,
-                                                  const StereoCalibration& calibration) {
-  auto image = dataset::ReadGrayPng(file);
-  if (!image) return Error(image.error().message);
-  if (image->width == calibration.width && image->height == calibration.height) return std::move(*image);
-  return Error(fmt::format("{}: {}x{} pixels, but calib.yaml says {}x{}; use images of the calibrated size",
-                           file.string(), image->width, image->height, calibration.width, calibration.height));
+// One frame's images in memory: left and right, or the image and its depth.
+struct FrameImages {
+  dataset::GrayImage left, right;
+  dataset::DepthImage depth;
+};
+
+template <typename Image>
+Outcome CheckSize(const Image& image, const std::filesystem::path& file, int width, int height, const char* origin) {
+  if (image.width == width && image.height == height) return {};
+  return Error(fmt::format("{}: {}x{} pixels, but {} says {}x{}; use images of the calibrated size", file.string(),
+                           image.width, image.height, origin, width, height));
 }
 
-Outcome ProcessFrame(const dataset::FrameEntry& entry, const StereoCalibration& calibration, Recognizer& recognizer,
+Outcome ReadInto(const std::filesystem::path& file, const dataset::Dataset& set, dataset::GrayImage& out) {
+  auto image = dataset::ReadGrayPng(file);
+  if (!image) return Error(image.error().message);
+  out = *std::move(image);
+  if (set.depth_camera) {
+    return CheckSize(out, file, set.depth_camera->width, set.depth_camera->height, "the first image");
+  }
+  return CheckSize(out, file, set.calibration.width, set.calibration.height, "calib.yaml");
+}
+
+Outcome ReadInto(const std::filesystem::path& file, const dataset::Dataset& set, dataset::DepthImage& out) {
+  auto image = dataset::ReadDepthPng(file);
+  if (!image) return Error(image.error().message);
+  out = *std::move(image);
+  return CheckSize(out, file, set.depth_camera->width, set.depth_camera->height, "the image it is registered to");
+}
+
+Outcome ReadImages(const dataset::FrameEntry& entry, const dataset::Dataset& set, FrameImages& out) {
+  if (const Outcome left = ReadInto(entry.left_path, set, out.left); !left) return left;
+  return set.depth_camera ? ReadInto(entry.depth_path, set, out.depth) : ReadInto(entry.right_path, set, out.right);
+}
+
+Outcome ProcessFrame(const dataset::FrameEntry& entry, const dataset::Dataset& set, Recognizer& recognizer,
                      StageClock& clock, StageObserver& observer, RecognitionResult& result, FrameTimes& times) {
-  const auto left = ReadImage(entry.left_path, calibration);
-  if (!left) return Error(left.error());
-  const auto right = ReadImage(entry.right_path, calibration);
-  if (!right) return Error(right.error());
+  FrameImages images;
+  if (const Outcome read = ReadImages(entry, set, images); !read) return read;
+  const DepthView depth{images.depth.view(), static_cast<float>(entry.depth_unit_m)};
   clock.Start();
-  const RecognizerError error = recognizer.Process(left->view(), right->view(), &observer, result);
+  const RecognizerError error = set.depth_camera
+                                    ? recognizer.ProcessDepth(images.left.view(), depth, &observer, result)
+                                    : recognizer.Process(images.left.view(), images.right.view(), &observer, result);
   times = clock.Stop();
   if (error == RecognizerError::kOk) return {};
   return Error(fmt::format("{}: {}", entry.left_path.string(), Describe(error)));
@@ -88,7 +120,8 @@ struct Inputs {
 };
 
 Result<Inputs, std::string> ReadInputs(const EvaluationOptions& options) {
-  auto set = dataset::ReadDataset(options.dataset);
+  auto set = dataset::IsDepthDataset(options.dataset) ? dataset::ReadDepthDataset(options.dataset)
+                                                      : dataset::ReadDataset(options.dataset);
   if (!set) return Error(set.error());
   auto truth = ReadGroundTruth(options.dataset);
   if (!truth) return Error(truth.error());
@@ -134,7 +167,7 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
     FrameTimes times;
     trace.Start(set.frames[i].gt);
     StageObserver& stages = options.trace ? static_cast<StageObserver&>(trace) : clock;
-    const Outcome done = ProcessFrame(set.frames[i], set.calibration, recognizer, clock, stages, result, times);
+    const Outcome done = ProcessFrame(set.frames[i], set, recognizer, clock, stages, result, times);
     if (!done) return Error(done.error());
     Record(set.frames[i], result, times, options.min_score, evaluation);
     if (!observer) continue;
