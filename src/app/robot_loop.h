@@ -13,6 +13,7 @@
 #include "app/stamp_clock.h"
 #include "hal/stereo_camera.h"
 #include "pipeline/recognizer.h"
+#include "pipeline/tracker.h"
 #include "publish/publisher.h"
 
 namespace wirepose::app {
@@ -21,6 +22,7 @@ struct RobotLoopConfig {
   std::chrono::nanoseconds frame_timeout;  // without a frame for that long: no_frames
   std::uint64_t max_frames = 0;            // frames of any status; 0: no end
   StampClock stamps{StampSource::kSystem, false};
+  bool tracking = true;  // objects are followed over frames
 };
 
 // What the loop joins. All outlive it.
@@ -61,6 +63,7 @@ class RobotLoop {
   const RobotLoopConfig config_;
   HealthMonitor health_;
   StageTimer timer_;
+  Tracker tracker_;
   FrameReport report_;
   SceneReport scene_;
   ImageReport image_;

@@ -1,5 +1,6 @@
 #include "tools/evaluation/evaluate.h"
 
+#include <chrono>
 #include <set>
 #include <utility>
 
@@ -17,6 +18,16 @@ constexpr double kMmPerMetre = 1000;
 Recognizer& TheRecognizer() {
   static Recognizer recognizer;
   return recognizer;
+}
+
+Tracker& TheTracker() {
+  static Tracker tracker;
+  return tracker;
+}
+
+// Data sets carry no times.
+CaptureTime TimeOf(const dataset::FrameEntry& entry, double rate_hz) {
+  return CaptureTime(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * entry.im_id / rate_hz)));
 }
 
 Outcome SetUp(const dataset::Dataset& dataset, const ModelSet& models, Recognizer& recognizer) {
@@ -54,13 +65,15 @@ Result<dataset::GrayImage, std::string> ReadImage(const std::filesystem::path& f
 }
 
 Outcome ProcessFrame(const dataset::FrameEntry& entry, const StereoCalibration& calibration, Recognizer& recognizer,
-                     StageClock& clock, StageObserver& observer, RecognitionResult& result, FrameTimes& times) {
+                     Tracker* tracker, CaptureTime time, StageClock& clock, StageObserver& observer,
+                     RecognitionResult& result, FrameTimes& times) {
   const auto left = ReadImage(entry.left_path, calibration);
   if (!left) return Error(left.error());
   const auto right = ReadImage(entry.right_path, calibration);
   if (!right) return Error(right.error());
   clock.Start();
-  const RecognizerError error = recognizer.Process(left->view(), right->view(), &observer, result);
+  const RecognizerError error =
+      ProcessTracked(recognizer, tracker, time, left->view(), right->view(), &observer, result);
   times = clock.Stop();
   if (error == RecognizerError::kOk) return {};
   return Error(fmt::format("{}: {}", entry.left_path.string(), Describe(error)));
@@ -134,7 +147,10 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
     FrameTimes times;
     trace.Start(set.frames[i].gt);
     StageObserver& stages = options.trace ? static_cast<StageObserver&>(trace) : clock;
-    const Outcome done = ProcessFrame(set.frames[i], set.calibration, recognizer, clock, stages, result, times);
+    if (i == 0 || set.frames[i].scene_id != set.frames[i - 1].scene_id) TheTracker().Forget();
+    const Outcome done =
+        ProcessFrame(set.frames[i], set.calibration, recognizer, options.track ? &TheTracker() : nullptr,
+                     TimeOf(set.frames[i], options.rate_hz), clock, stages, result, times);
     if (!done) return Error(done.error());
     Record(set.frames[i], result, times, options.min_score, evaluation);
     if (!observer) continue;
