@@ -28,7 +28,7 @@ struct Detection {
   float visible_fraction = 0;              // supported length over the length of all edges that face the camera, 0..1
   std::uint32_t track_id = 0;              // 0: not tracked
   float existence = 0;                     // of a tracked object: probability that it exists, by all frames so far
-  FixedVector<PoseMode, kMaxModes> modes;  // heaviest first; empty: the pose is unambiguous
+  FixedVector<PoseMode, kMaxModes> modes;  // T_camera_model and others, heaviest first; empty: unambiguous
 };
 
 // Where an object may be, by what is known besides the frame: a pose to start from, which the frame must confirm.
