@@ -49,8 +49,9 @@ inline constexpr std::size_t kMaxLineSetEdges = 48;  // longest edges, the only 
 inline constexpr std::size_t kMaxModelLineSets = 2 * kMaxLineSetEdges;  // one parallel, one intersecting per base line
 inline constexpr std::size_t kMaxModelSetMembers = kMaxLineSetEdges * (kMaxLineSetEdges - 1);
 inline constexpr std::size_t kMaxModelSymmetries = 24;  // rotations of a cube, identity included
-inline constexpr std::size_t kMaxModelAspects = 162;    // directions of a twice subdivided icosahedron
-inline constexpr std::size_t kMaxModelName = 32;        // bytes, zero-terminated
+inline constexpr std::size_t kMaxNearTurns = 3;       // turns that nearly are symmetries; each costs a detection 0.1 ms
+inline constexpr std::size_t kMaxModelAspects = 162;  // directions of a twice subdivided icosahedron
+inline constexpr std::size_t kMaxModelName = 32;      // bytes, zero-terminated
 
 static_assert(kMaxModelEdges % 32 == 0, "visibility bits are stored in 32 bit words");
 static_assert(kMaxLineSetEdges <= kMaxModelEdges);
@@ -59,6 +60,10 @@ static_assert(kMaxModelVertices < 0xFFFF && kMaxModelTriangles < 0xFFFF, "indice
 // --- Output --------------------------------------------------------------------------------------------------------
 inline constexpr std::size_t kMaxDetections = 16;  // objects in one frame; also the bound of the DDS sequences
 inline constexpr std::size_t kMaxModes = 4;        // poses that the visible evidence of one detection cannot tell apart
+
+// --- Over frames ---------------------------------------------------------------------------------------------------
+inline constexpr std::size_t kMaxTracks = 32;  // objects followed at once: twice what a frame can show
+inline constexpr std::size_t kMaxPriors = 16;  // predicted poses that a frame tries: as many as it can report
 
 }  // namespace wirepose
 

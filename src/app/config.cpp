@@ -86,6 +86,11 @@ CameraConfig ReadCamera(YamlSection section, const std::filesystem::path& file) 
   return config;
 }
 
+void ReadRecognizer(YamlSection section, Config& config) {
+  section.Read("tracking", config.tracking);
+  section.Finish();
+}
+
 }  // namespace
 
 CameraBackend ParseCameraBackend(const std::string& name, const std::string& where) {
@@ -102,6 +107,7 @@ Config LoadConfig(const std::filesystem::path& file) {
     config.file = file;
     config.camera = ReadCamera(section.Section("camera"), file);
     config.dds = ReadDds(section.Section("dds"));
+    ReadRecognizer(section.Section("recognizer"), config);
     section.Read("models", config.models);
     section.Read("search_for", config.search_for);
     section.Finish();

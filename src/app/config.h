@@ -34,6 +34,7 @@ struct Config {
   std::filesystem::path file;  // for messages
   CameraConfig camera;
   DdsConfig dds;
+  bool tracking = true;                       // objects are followed over frames
   std::vector<std::filesystem::path> models;  // .wpm files and folders of them
   std::vector<std::uint32_t> search_for;      // model ids; empty: all that were loaded
 };

@@ -100,9 +100,9 @@ void Run(const Options& options) {
   service.Ready(status);
   CommandHandler commands(g_recognizer, g_models, camera->calibration().width, camera->calibration().height);
   const bool live = config.camera.backend == CameraBackend::kLibcamera;
-  const auto loop =
-      std::make_unique<RobotLoop>(RobotParts{*camera, g_recognizer, g_publisher, commands, service},
-                                  RobotLoopConfig{config.camera.timeout, options.frames, StampClock(dds.stamp, live)});
+  const auto loop = std::make_unique<RobotLoop>(
+      RobotParts{*camera, g_recognizer, g_publisher, commands, service},
+      RobotLoopConfig{config.camera.timeout, options.frames, StampClock(dds.stamp, live), config.tracking});
   loop->Run(g_stop);
   service.Stopping();
   (void)camera->Stop();

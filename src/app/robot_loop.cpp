@@ -60,7 +60,8 @@ void RobotLoop::HandleFrame(hal::FrameLease lease) {
     return;
   }
   timer_.FrameBegins();
-  const RecognizerError error = recognizer_.Process(lease->left, lease->right, &timer_, report_.result);
+  const RecognizerError error = ProcessTracked(recognizer_, config_.tracking ? &tracker_ : nullptr, lease->capture_time,
+                                               lease->left, lease->right, &timer_, report_.result);
   timer_.FrameEnds();
   report_.sequence = lease->sequence;
   report_.capture_time = lease->capture_time;
@@ -94,7 +95,9 @@ void RobotLoop::PublishImage(const ImageView& left) {
 void RobotLoop::HandleCommands() {
   Command command;
   while (publisher_.TakeCommand(command)) {
-    publisher_.Answer(commands_.Execute(command));
+    const CommandAnswer answer = commands_.Execute(command);
+    publisher_.Answer(answer);
+    if (answer.accepted && command.action == CommandAction::kReloadModels) tracker_.Forget();
     report_.models = LabelsOf(recognizer_.models(), recognizer_.searched());
   }
 }

@@ -14,6 +14,7 @@
 #include "hal/stereo_camera.h"
 #include "pipeline/recognizer.h"
 #include "pipeline/row_alignment.h"
+#include "pipeline/tracker.h"
 #include "publish/publisher.h"
 
 namespace wirepose::app {
@@ -22,6 +23,7 @@ struct RobotLoopConfig {
   std::chrono::nanoseconds frame_timeout;  // without a frame for that long: no_frames
   std::uint64_t max_frames = 0;            // frames of any status; 0: no end
   StampClock stamps{StampSource::kSystem, false};
+  bool tracking = true;  // objects are followed over frames
 };
 
 // What the loop joins. All outlive it.
@@ -63,6 +65,7 @@ class RobotLoop {
   HealthMonitor health_;
   StageTimer timer_;
   AlignmentMonitor alignment_;
+  Tracker tracker_;
   FrameReport report_;
   SceneReport scene_;
   ImageReport image_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/symmetry.h"
+
 namespace wirepose {
 namespace {
 
@@ -178,6 +180,7 @@ void PrepareModel(const ModelView& view, PreparedModel& out) {
   MarkRepresentatives(out);
   PrepareSets(out);
   IndexAspects(out);
+  FindNearTurns(out);
 }
 
 }  // namespace wirepose

@@ -27,7 +27,14 @@ struct Detection {
   float score = 0;                         // probability in [0, 1] that object and pose are right
   float visible_fraction = 0;              // supported length over the length of all edges that face the camera, 0..1
   std::uint32_t track_id = 0;              // 0: not tracked
-  FixedVector<PoseMode, kMaxModes> modes;  // empty: the pose is unambiguous
+  float existence = 0;                     // of a tracked object: probability that it exists, by all frames so far
+  FixedVector<PoseMode, kMaxModes> modes;  // T_camera_model and others, heaviest first; empty: unambiguous
+};
+
+// Where an object may be, by what is known besides the frame: a pose to start from, which the frame must confirm.
+struct PosePrior {
+  std::uint32_t model_id = 0;
+  Pose T_camera_model;  // to the raw left camera, m
 };
 
 // The stages in the order in which they run; names the stage times in health and evaluation.

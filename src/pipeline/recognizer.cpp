@@ -138,12 +138,13 @@ std::span<const Candidate> Recognizer::candidates() const { return candidates_.i
 
 // The flow: frame -> rectified pair -> segments -> 3D lines -> line sets -> (for each model) correspondences ->
 // hypotheses -> promoted sets -> refined, verified poses -> detections.
-RecognizerError Recognizer::Process(ImageView left, ImageView right, StageObserver* observer,
-                                    RecognitionResult& result) {
+RecognizerError Recognizer::Process(ImageView left, ImageView right, std::span<const PosePrior> priors,
+                                    StageObserver* observer, RecognitionResult& result) {
   result = {};
   if (const RecognizerError error = CheckImages(true, {left, right}); error != RecognizerError::kOk) return error;
   StageTimer timer(observer);
   FindFeatures(left, right, timer, result.statistics);
+  SetPriors(priors);
   Recognize(timer, result);
   return RecognizerError::kOk;
 }
@@ -158,6 +159,7 @@ RecognizerError Recognizer::ProcessDepth(ImageView image, const DepthView& depth
   if (!(depth.unit_m > 0 && depth.unit_m <= 1)) return RecognizerError::kBadDepthUnit;
   StageTimer timer(observer);
   FindFeatures(image, depth, timer, result.statistics);
+  SetPriors({});
   Recognize(timer, result);
   return RecognizerError::kOk;
 }
@@ -269,7 +271,7 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   Count(pairs_.size(), kMaxCorrespondences, pairs_.dropped(), result.statistics.correspondences);
   timer.Done(Stage::kCorrespondences);
 
-  const SceneEdges scene{camera(), left_edges_, right_edges_};
+  const SceneEdges scene = Edges();
   const auto& pairs = pairs_.Sorted();
   const bool all_poses =
       MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, {pairs.begin(), pairs.end()}, hypotheses_);
@@ -280,24 +282,19 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   PromoteSets(params_.promotion, scorer, camera(), model, lines_, {hypotheses.begin(), hypotheses.end()}, sets_);
   timer.Done(Stage::kHypotheses);
 
-  FixedVector<Candidate, kMaxRefined> refined;
-  const SceneImages images = ImagesFor(params_.refine);
+  refined_.clear();
   for (std::size_t i = 0; i < std::min(sets_.size(), kMaxRefined); ++i) {
     const CorrespondingSet& set = sets_[i];
     Candidate candidate;
-    candidate.model = static_cast<std::uint16_t>(m);
     candidate.order = static_cast<std::uint16_t>(i);
     candidate.members = set.members;
-    const Pose start{Orthonormalize(set.R.cast<double>()), set.t.cast<double>()};
-    RefinePose(params_.refine, images, model, start, refine_scratch_, candidate.pose);
-    if (candidate.pose.ok) refined.push_back(candidate);
+    RefineFrom(m, {Orthonormalize(set.R.cast<double>()), set.t.cast<double>()}, candidate);
   }
+  RefinePriors(m);
   timer.Done(Stage::kRefine);
 
-  const VerifyInput input{camera(), left_edges_, right_edges_, left_smooth_, right_smooth_, disparity_};
-  for (Candidate& candidate : refined) {
-    GatherEvidence(params_.verify, input, model, candidate.pose, verify_scratch_, candidate.evidence);
-    candidate.score = ScoreOf(DefaultScoreTable(), TermsOf(candidate.evidence));
+  for (Candidate& candidate : refined_) {
+    Judge(candidate);
     candidates_.Push(candidate);
   }
   timer.Done(Stage::kVerify);
@@ -308,38 +305,43 @@ SceneImages Recognizer::ImagesFor(const RefineParams& params) const {
   return {camera(), left_smooth_, right_smooth_, surface ? &disparity_ : nullptr};
 }
 
+void Recognizer::RefineFrom(std::size_t m, const Pose& start, Candidate& candidate) {
+  candidate.model = static_cast<std::uint16_t>(m);
+  RefinePose(params_.refine, ImagesFor(params_.refine), models_[m], start, refine_scratch_, candidate.pose);
+  if (candidate.pose.ok) refined_.push_back(candidate);
+}
+
+// A prior at which a candidate lies already would only lead there again.
+void Recognizer::RefinePriors(std::size_t m) {
+  const PreparedModel& model = models_[m];
+  const float tolerance = params_.promotion.duplicate_share * model.view.diameter_m;
+  for (std::size_t i = 0; i < priors_.size(); ++i) {
+    const Pose& start = priors_[i].T_camera_model;
+    if (priors_[i].model_id != model.view.id || !(start.t.z() > 0)) continue;
+    const bool known = std::any_of(refined_.begin(), refined_.end(), [&](const Candidate& c) {
+      const Pose& T = c.pose.T_camera_model;
+      return IsSamePose(model, T.R.cast<float>(), T.t.cast<float>(), start.R.cast<float>(), start.t.cast<float>(),
+                        tolerance);
+    });
+    if (known) continue;
+    Candidate candidate;
+    candidate.order = static_cast<std::uint16_t>(kMaxRefined + i);
+    RefineFrom(m, start, candidate);
+  }
+}
+
+void Recognizer::Judge(Candidate& candidate) {
+  const VerifyInput input{camera(), left_edges_, right_edges_, left_smooth_, right_smooth_, disparity_};
+  GatherEvidence(params_.verify, input, models_[candidate.model], candidate.pose, verify_scratch_, candidate.evidence);
+  candidate.score = ScoreOf(DefaultScoreTable(), TermsOf(candidate.evidence));
+}
+
 // The last of the adjustment, with more samples and iterations; what it cannot improve stays.
 void Recognizer::Polish(Candidate& candidate) {
   RefinedPose polished;
   RefinePose(params_.polish, ImagesFor(params_.polish), models_[candidate.model], candidate.pose.T_camera_model,
              refine_scratch_, polished);
   if (polished.ok) candidate.pose = polished;
-}
-
-void Recognizer::Report(RecognitionResult& result) {
-  auto& candidates = candidates_.Sorted();
-  std::uint32_t dropped = 0;
-  SelectDetections(params_.select, camera(), left_edges_, {models_.begin(), models_.end()},
-                   {candidates.begin(), candidates.end()}, verify_scratch_, claims_, accepted_, dropped);
-  // Results are given in the raw left camera's frame.
-  const Pose T_raw_rectified = T_rectified_raw().Inverse();
-  Matrix6d turn = Matrix6d::Zero();
-  turn.topLeftCorner<3, 3>() = T_raw_rectified.R;
-  turn.bottomRightCorner<3, 3>() = T_raw_rectified.R;
-  for (const std::uint16_t i : accepted_) {
-    Candidate& candidate = candidates[i];
-    Polish(candidate);
-    Detection detection;
-    detection.model_id = models_[candidate.model].view.id;
-    detection.T_camera_model = T_raw_rectified * candidate.pose.T_camera_model;
-    detection.covariance = turn * candidate.pose.covariance * turn.transpose();
-    detection.score = candidate.score;
-    detection.visible_fraction =
-        candidate.evidence.edges.support * candidate.evidence.edges.inside * (1 - candidate.evidence.hidden);
-    result.detections.push_back(detection);
-  }
-  result.statistics.detections = {static_cast<std::uint32_t>(accepted_.size()),
-                                  static_cast<std::uint32_t>(kMaxDetections), dropped};
 }
 
 }  // namespace wirepose

@@ -64,6 +64,14 @@ class StageObserver {
   virtual void DoStageDone(Stage stage) = 0;
 };
 
+// Which poses of one object are reported as modes.
+struct AmbiguityParams {
+  float min_weight = 0.05F;      // lighter modes are not reported
+  float min_overlap = 0.5F;      // share of a rival's supporting edges that also support the detection
+  float distinct_share = 0.1F;   // of the diameter: nearer poses are one mode
+  float turned_support = 0.75F;  // of the detection's coarse score: what a turned pose needs to be looked at
+};
+
 // Every parameter of every stage, with the one default that all models and all data share.
 struct RecognizerParams {
   EdgeImageParams edges;
@@ -81,6 +89,7 @@ struct RecognizerParams {
   RefineParams polish;                                               // of what is reported
   VerifyParams verify;
   SelectParams select;
+  AmbiguityParams ambiguity;
 };
 
 // A rectangle of the raw left image; without area it stands for the whole image.
@@ -128,7 +137,15 @@ class Recognizer {
 
   // Recognizes every added model in a raw pair of the calibrated size. `observer` may be null. Bounded time: every loop
   // has a compile-time bound; a search that stops at its bound sets `budget_hit`.
-  RecognizerError Process(ImageView left, ImageView right, StageObserver* observer, RecognitionResult& result);
+  RecognizerError Process(ImageView left, ImageView right, StageObserver* observer, RecognitionResult& result) {
+    return Process(left, right, {}, observer, result);
+  }
+  // The same with poses to start from besides those that the lines suggest. They are refined, verified and scored like
+  // every other candidate: a prior finds what lines miss but makes no pose more probable. Of poses that a symmetry
+  // makes equal the one nearest to a prior at the same place is reported. The first kMaxPriors are used; priors of
+  // models that are not searched for are ignored.
+  RecognizerError Process(ImageView left, ImageView right, std::span<const PosePrior> priors, StageObserver* observer,
+                          RecognitionResult& result);
 
   // The same in an image with its depth: lines get theirs from the surfaces beside them instead of a second image, and
   // what a second image would say is left open. Poses are in the camera's frame.
@@ -156,8 +173,10 @@ class Recognizer {
   // Of the model at hand, during StageDone(kCorrespondences), in no particular order.
   [[nodiscard]] std::span<const CorrespondingPair> corresponding_pairs() const { return pairs_.items(); }
   [[nodiscard]] std::size_t detection_count() const { return accepted_.size(); }
-  // The corresponding line set behind detection i: which image line lies on which model edge.
+  // The corresponding line set behind detection i: which image line lies on which model edge. Empty when a prior found
+  // it.
   [[nodiscard]] std::span<const SetMember> line_set(std::size_t i) const;
+  [[nodiscard]] std::span<const PreparedModel> prepared_models() const { return {models_.begin(), models_.end()}; }
   [[nodiscard]] const PreparedModel& prepared_model(std::size_t i) const { return models_[i]; }
   // Of the model at hand, during StageDone(kHypotheses): coarse poses and promoted sets, best first.
   [[nodiscard]] std::span<const Hypothesis> hypotheses() const { return hypotheses_.items(); }
@@ -188,7 +207,27 @@ class Recognizer {
   // Also counts the edge pixels into `pixels`. Only the left eye's edges become segments (`segments` not null).
   void FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
                  Segments* segments, ListUse& pixels);
+  [[nodiscard]] SceneEdges Edges() const { return {camera(), left_edges_, right_edges_}; }
+  // Refines from `start` and appends to refined_ what fits.
+  void RefineFrom(std::size_t m, const Pose& start, Candidate& candidate);
+  void RefinePriors(std::size_t m);
+  void Judge(Candidate& candidate);
   void Polish(Candidate& candidate);
+
+  // recognizer_report.cpp
+  struct Rival {  // a pose that may be a mode
+    Pose T_camera_model;
+    float odds = 0;
+  };
+  using Rivals = FixedVector<Rival, kMaxRefined + kMaxPriors + kMaxNearTurns + 1>;
+  void SetPriors(std::span<const PosePrior> priors);
+  [[nodiscard]] Matrix3d ReferenceFor(const Candidate& candidate) const;
+  void MakeCanonical(const Matrix3d& R_reference, Candidate& candidate) const;
+  [[nodiscard]] bool IsRival(const Candidate& candidate, const Rivals& rivals, float min_odds);
+  void FindTurnedRivals(const Candidate& candidate, float min_odds, Rivals& rivals);
+  void FindModes(std::size_t i, std::span<const Candidate> candidates, const Matrix3d& R_reference,
+                 Detection& detection);
+  [[nodiscard]] Detection DetectionOf(const Candidate& candidate) const;
   void Report(RecognitionResult& result);
 
   RecognizerParams params_;
@@ -215,7 +254,9 @@ class Recognizer {
   CorrespondingPairs pairs_;
   Hypotheses hypotheses_;
   CorrespondingSets sets_;
+  FixedVector<Candidate, kMaxRefined + kMaxPriors> refined_;
   // Of all models.
+  FixedVector<PosePrior, kMaxPriors> priors_;  // in the rectified frame
   Candidates candidates_;
   FixedVector<std::uint16_t, kMaxDetections> accepted_;
 

@@ -6,8 +6,8 @@ namespace wirepose {
 namespace {
 
 // Visits the claim block under every edge sample that finds an image edge.
-template <typename Visit>
-void ForEachSupported(const EdgeMap& left, const EdgeSamples& samples, ClaimMap& claims, const Visit& visit) {
+template <typename Claims, typename Visit>
+void ForEachSupported(const EdgeMap& left, const EdgeSamples& samples, Claims& claims, const Visit& visit) {
   for (const EdgeSample& s : samples) {
     if (!left.Contains(s.left.x(), s.left.y())) continue;
     if (!left.HasEdge(s.left.x(), s.left.y(), EdgeMap::Direction(s.tangent.x(), s.tangent.y()))) continue;
@@ -22,7 +22,33 @@ bool IsDuplicate(const PreparedModel& model, const Pose& p, const Pose& q) {
                     0.3F * model.view.diameter_m);
 }
 
+// Length of the supporting edges, and how much of it is claimed.
+struct Length {
+  float total = 0, claimed = 0;
+};
+Length Measure(const EdgeMap& left, const EdgeSamples& samples, const ClaimMap& claims) {
+  Length length;
+  ForEachSupported(left, samples, claims, [&](bool claimed, float piece) {
+    length.total += piece;
+    if (claimed) length.claimed += piece;
+  });
+  return length;
+}
+
 }  // namespace
+
+void ClaimEdges(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model, const Pose& pose,
+                VerifyScratch& scratch, ClaimMap& claims) {
+  SampleVisibleEdges({}, camera, model, pose, scratch.front, scratch.samples);
+  ForEachSupported(left, scratch.samples, claims, [](bool& claimed, float) { claimed = true; });
+}
+
+float ClaimedShare(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model, const Pose& pose,
+                   VerifyScratch& scratch, const ClaimMap& claims) {
+  SampleVisibleEdges({}, camera, model, pose, scratch.front, scratch.samples);
+  const Length length = Measure(left, scratch.samples, claims);
+  return length.total > 0 ? length.claimed / length.total : 0;
+}
 
 void SelectDetections(const SelectParams& params, const RectifiedCamera& camera, const EdgeMap& left,
                       std::span<const PreparedModel> models, std::span<const Candidate> candidates,
@@ -42,12 +68,8 @@ void SelectDetections(const SelectParams& params, const RectifiedCamera& camera,
     }
     if (duplicate) continue;
     SampleVisibleEdges({}, camera, models[c.model], c.pose.T_camera_model, scratch.front, scratch.samples);
-    float total = 0, taken = 0;
-    ForEachSupported(left, scratch.samples, claims, [&](bool claimed, float length) {
-      total += length;
-      if (claimed) taken += length;
-    });
-    if (taken > params.max_claimed * total) continue;
+    const Length length = Measure(left, scratch.samples, claims);
+    if (length.claimed > params.max_claimed * length.total) continue;
     if (!accepted.try_push_back(static_cast<std::uint16_t>(i))) {
       ++dropped;
       continue;

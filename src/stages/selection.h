@@ -40,6 +40,13 @@ struct ClaimMap {
   std::array<bool, std::size_t{kWidth} * kHeight> claimed;
 };
 
+// Marks the blocks of the left image's edges that support the model at the pose. O(samples).
+void ClaimEdges(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model, const Pose& pose,
+                VerifyScratch& scratch, ClaimMap& claims);
+// Share of the supporting edges' length that lies in marked blocks, 0..1; 0 when nothing supports the pose. O(samples).
+[[nodiscard]] float ClaimedShare(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model,
+                                 const Pose& pose, VerifyScratch& scratch, const ClaimMap& claims);
+
 // Greedy and exclusive: candidates by falling score; each owns the image edges that support it, and one of whose
 // support more than max_claimed belongs to others is dropped. Instances of one model at the same place (modulo
 // symmetry) merge. `accepted` receives indices into `candidates`, best first. O(candidates * samples).

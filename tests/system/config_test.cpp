@@ -45,6 +45,7 @@ TEST_F(ConfigTest, EmptyFileGivesDefaults) {
   EXPECT_FALSE(config.dds.bus.loopback);
   EXPECT_EQ(config.dds.frame_id, "wirepose_left_optical");
   EXPECT_TRUE(config.models.empty());
+  EXPECT_TRUE(config.tracking);
 }
 
 TEST_F(ConfigTest, ReadsEveryKey) {
@@ -55,6 +56,7 @@ camera:
   replay: { data_set: /data/set, split: train, scene: 4, loop: true, frame_rate_hz: 12.5 }
   simulated: { meshes: meshes, calibration: rig.yaml, seed: 9, frames: 100, loop_frames: 12, frame_rate_hz: 15, samples_per_pixel: 25, truth_file: truth.jsonl }
 dds: { domain: 42, loopback: true, frame_id: eye }
+recognizer: { tracking: false }
 models: [a.wpm, /b]
 search_for: [3, 1]
 )");
@@ -74,6 +76,7 @@ search_for: [3, 1]
   EXPECT_EQ(config.camera.simulated.frame_rate_hz, 15);
   EXPECT_EQ(config.camera.simulated.samples_per_pixel, 25);
   EXPECT_EQ(config.camera.simulated.truth_path, folder / "truth.jsonl");
+  EXPECT_FALSE(config.tracking);
   EXPECT_EQ(config.dds.bus.domain, 42u);
   EXPECT_TRUE(config.dds.bus.loopback);
   EXPECT_EQ(config.dds.frame_id, "eye");

@@ -139,6 +139,10 @@ void AddEvalCommand(CLI::App& app) {
       ->check([](const std::string& text) {
         return text.starts_with('-') ? std::string("must not be negative") : std::string();
       });
+  eval->add_flag("--track", arguments->options.track,
+                 "Follow objects over the frames of a scene, as wireposed does; without: each frame by itself");
+  eval->add_option("--rate", arguments->options.rate_hz, "Frames per second of a scene's images, for --track")
+      ->check(CLI::Range(0.1, 1000.0));
   eval->add_option("--min-score", arguments->options.min_score, "Drop detections below this score");
   eval->callback([arguments] { RunEval(*arguments); });
 }

@@ -1,5 +1,6 @@
 #include "tools/evaluation/evaluate.h"
 
+#include <chrono>
 #include <set>
 #include <utility>
 
@@ -19,6 +20,16 @@ constexpr double kMmPerMetre = 1000;
 Recognizer& TheRecognizer() {
   static Recognizer recognizer;
   return recognizer;
+}
+
+Tracker& TheTracker() {
+  static Tracker tracker;
+  return tracker;
+}
+
+// Data sets carry no times.
+CaptureTime TimeOf(const dataset::FrameEntry& entry, double rate_hz) {
+  return CaptureTime(std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * entry.im_id / rate_hz)));
 }
 
 Outcome SetUp(const dataset::Dataset& dataset, const ModelSet& models, Recognizer& recognizer) {
@@ -85,14 +96,15 @@ Outcome ReadImages(const dataset::FrameEntry& entry, const dataset::Dataset& set
 }
 
 Outcome ProcessFrame(const dataset::FrameEntry& entry, const dataset::Dataset& set, Recognizer& recognizer,
-                     StageClock& clock, StageObserver& observer, RecognitionResult& result, FrameTimes& times) {
+                     Tracker* tracker, CaptureTime time, StageClock& clock, StageObserver& observer,
+                     RecognitionResult& result, FrameTimes& times) {
   FrameImages images;
   if (const Outcome read = ReadImages(entry, set, images); !read) return read;
   const DepthView depth{images.depth.view(), static_cast<float>(entry.depth_unit_m)};
   clock.Start();
-  const RecognizerError error = set.depth_camera
-                                    ? recognizer.ProcessDepth(images.left.view(), depth, &observer, result)
-                                    : recognizer.Process(images.left.view(), images.right.view(), &observer, result);
+  const RecognizerError error = set.depth_camera ? recognizer.ProcessDepth(images.left.view(), depth, &observer, result)
+                                                 : ProcessTracked(recognizer, tracker, time, images.left.view(),
+                                                                  images.right.view(), &observer, result);
   times = clock.Stop();
   if (error == RecognizerError::kOk) return {};
   return Error(fmt::format("{}: {}", entry.left_path.string(), Describe(error)));
@@ -156,6 +168,10 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
   const auto inputs = ReadInputs(options);
   if (!inputs) return Error(inputs.error());
   const auto& [set, truth, models] = *inputs;
+  if (options.track && set.depth_camera) {
+    return Error(fmt::format("{}: a camera with depth; objects are followed over stereo frames only, leave --track out",
+                             set.root.string()));
+  }
   Recognizer& recognizer = TheRecognizer();
   const Outcome ready = SetUp(set, models, recognizer);
   if (!ready) return Error(ready.error());
@@ -167,7 +183,9 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
     FrameTimes times;
     trace.Start(set.frames[i].gt);
     StageObserver& stages = options.trace ? static_cast<StageObserver&>(trace) : clock;
-    const Outcome done = ProcessFrame(set.frames[i], set, recognizer, clock, stages, result, times);
+    if (i == 0 || set.frames[i].scene_id != set.frames[i - 1].scene_id) TheTracker().Forget();
+    const Outcome done = ProcessFrame(set.frames[i], set, recognizer, options.track ? &TheTracker() : nullptr,
+                                      TimeOf(set.frames[i], options.rate_hz), clock, stages, result, times);
     if (!done) return Error(done.error());
     Record(set.frames[i], result, times, options.min_score, evaluation);
     if (!observer) continue;

@@ -10,6 +10,7 @@
 #include "base/result.h"
 #include "hal/dataset/dataset.h"
 #include "pipeline/recognizer.h"
+#include "pipeline/tracker.h"
 #include "tools/evaluation/metrics.h"
 #include "tools/evaluation/model_set.h"
 #include "tools/evaluation/stage_clock.h"
@@ -23,6 +24,8 @@ struct EvaluationOptions {
   std::vector<int> object_ids;   // search only for these; empty: for all
   std::size_t frame_limit = 0;   // the first so many frames, and judge by them alone; 0: all
   bool trace = false;            // follow the true instances through the stages
+  bool track = false;            // follow objects over the frames of a scene, as wireposed does; else single frames
+  double rate_hz = 30;           // of the frames when they are tracked: image ids count frames
   double min_score = 0;          // detections below are dropped before anything else looks at them
 };
 
