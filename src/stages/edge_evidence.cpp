@@ -63,25 +63,6 @@ class Gatherer {
     for (const float chance : kChances) sums.chance_hits += Find(chance, right).found() ? 1.0F : 0.0F;
     sums.chances += static_cast<float>(kChances.size());
     sums.Add(Find(0, right), normal.x(), params_.sharp_offset_px);
-    if (!right) return;
-    sums.compared += 1;
-    sums.likeness += Likeness();
-  }
-
-  // Normalised correlation of both images' gradients across the edge, 0..1. What lies beside a true edge at its depth
-  // looks alike in both.
-  [[nodiscard]] float Likeness() const {
-    constexpr int kNear = 6;
-    const float noise = params_.noise_floor * kGradientOne;
-    float both = 0, left = 0, right = 0;
-    for (int o = -kNear; o <= kNear; ++o) {
-      const float l = left_.GradientAt(o), r = right_.GradientAt(o);
-      both += l * r;
-      left += l * l;
-      right += r * r;
-    }
-    const float floor = (2 * kNear + 1) * noise * noise;
-    return std::max(0.0F, both / std::sqrt((left + floor) * (right + floor)));
   }
 
   // The nearest support of an edge at offset `at`.

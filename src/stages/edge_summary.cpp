@@ -55,7 +55,6 @@ class Summary {
     out.sharp_of_support = Share(all_.sharp, all_.hits);
     out.spread_px = spread_hits_ > 0 ? std::sqrt(std::max(0.0F, variance_ / spread_hits_)) : params_.max_offset_px;
     out.parallax_px = Parallax();
-    out.likeness = Share(all_.likeness, all_.compared);
     out.full_edges = Share(full_edges_, edges_);
     out.weak_edges = Share(weak_edges_, edges_);
     out.weakest_edge = weakest_;

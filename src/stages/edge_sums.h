@@ -88,7 +88,6 @@ struct EdgeSums {
   float offset = 0, offset_squared = 0;  // of the hits in the left image, px
   // Of the hits: products of the difference of both images' offsets and the part of a disparity that it would show.
   float parallax_squared = 0, parallax_across = 0, across_squared = 0;
-  float compared = 0, likeness = 0;             // samples seen in both images, and how much their profiles are alike
   float piece_px = 0, distinct = 0, clear = 0;  // of averaged pieces, weighted by their length
   EndSums first;                                // the samples next to the edge's first end
   std::uint32_t recent = 0;                     // bit k: the sample k before the newest was a hit
@@ -125,7 +124,6 @@ struct EdgeSums {
     samples += other.samples, hits += other.hits, sharp += other.sharp;
     parallax_squared += other.parallax_squared;
     parallax_across += other.parallax_across, across_squared += other.across_squared;
-    compared += other.compared, likeness += other.likeness;
     chances += other.chances, chance_hits += other.chance_hits;
     length_px += other.length_px, piece_px += other.piece_px, distinct += other.distinct, clear += other.clear;
   }

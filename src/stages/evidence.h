@@ -35,7 +35,6 @@ struct EdgeEvidence {
   float sharp_of_support = 0;  // share of the supported ones that are sharp
   float spread_px = 0;         // standard deviation of the supporting offsets within an edge
   float parallax_px = 0;       // rms difference of both images' offsets, without what a common disparity explains
-  float likeness = 0;          // correlation of both images' gradients across the edge
   float full_edges = 0;        // share of edges with support of more than four fifths
   float weak_edges = 0;        // and of less than two fifths
   float weakest_edge = 0;      // lowest support of an edge
@@ -61,7 +60,7 @@ struct Evidence {
   float uncertainty = 0;    // of the position by what the visible edges determine, over the diameter
 };
 
-inline constexpr std::size_t kEvidenceTerms = 32;
+inline constexpr std::size_t kEvidenceTerms = 31;
 using EvidenceTerms = std::array<float, kEvidenceTerms>;
 
 // The terms in a fixed order, as the score reads them, and their names in that order.

@@ -63,23 +63,6 @@ TEST_F(VerificationTest, RightPoseBeatsShiftedOnes) {
   }
 }
 
-// Both images show the same beside a true edge.
-TEST_F(VerificationTest, TrueEdgesAreAlikeInBothImages) {
-  Random random(12);
-  const Pose T = testing::GoodView(random, *model_);
-  const RenderedScene scene = Show(T, sim::Texture::kLabel, 15);
-  const EdgeEvidence right = Gather(scene, T).edges;
-  EXPECT_GT(right.likeness, 0.6F);
-  double likeness = 0;
-  const int count = Cases(50);
-  for (int k = 0; k < count; ++k) {
-    const EdgeEvidence wrong =
-        Gather(scene, testing::Shaken(random, T, random.Uniform(0.15, 1), random.Uniform(0.03, 0.1))).edges;
-    likeness += static_cast<double>(wrong.likeness);
-  }
-  EXPECT_LT(likeness / count, static_cast<double>(right.likeness) - 0.1);
-}
-
 // A box seen on three faces, of which one edge is missing and another held at one end only.
 TEST_F(VerificationTest, SummaryCountsEndsCornersAndFaces) {
   Random random(13);
