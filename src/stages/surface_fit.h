@@ -35,11 +35,11 @@ using SurfaceSamples = FixedVector<SurfaceSample, kMaxSurfaceSamples>;
 
 // A measured disparity with its derivative by the twist of PerturbLeft about the model origin.
 struct SurfaceRow {
-  Vector6d J;
-  double residual = 0;  // px, measured minus predicted
-  Vector6d pull;        // what the normal equations' right side gets of each px of the residual
-  double weight = 0;    // robust, 0..1
-  double sigma = 1;     // px, of what all faces have in common
+  Vector6d J = Vector6d::Zero();
+  double residual = 0;               // px, measured minus predicted
+  Vector6d pull = Vector6d::Zero();  // what the normal equations' right side gets of each px of the residual
+  double weight = 0;                 // robust, 0..1
+  double sigma = 1;                  // px, of what all faces have in common
   std::uint16_t face = 0;
 };
 using SurfaceRows = FixedVector<SurfaceRow, kMaxSurfaceSamples>;
