@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/symmetry.h"
-
 namespace wirepose {
 namespace {
 
@@ -180,7 +178,6 @@ void PrepareModel(const ModelView& view, PreparedModel& out) {
   MarkRepresentatives(out);
   PrepareSets(out);
   IndexAspects(out);
-  FindNearTurns(out);
 }
 
 }  // namespace wirepose

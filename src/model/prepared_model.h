@@ -46,8 +46,6 @@ struct PreparedModel {
   FixedVector<PreparedEdge, kMaxModelEdges> edges;
   // Symmetries as poses, the identity first.
   FixedVector<Pose, kMaxModelSymmetries> symmetries;
-  // Turns that nearly are symmetries (model/symmetry.h), as arguments of BoxTurn.
-  FixedVector<std::uint8_t, kMaxNearTurns> near_turns;
   FixedVector<PreparedSet, kMaxModelLineSets> sets;
   FixedVector<PreparedMember, kMaxModelSetMembers> members;
   std::array<Vector3, 8> corners;  // of the bounding box

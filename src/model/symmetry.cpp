@@ -101,7 +101,7 @@ Pose TurnedModel(const PreparedModel& model, std::size_t k) {
   return {R, centre - R * centre};
 }
 
-void FindNearTurns(PreparedModel& model) {
+NearTurns FindNearTurns(const PreparedModel& model) {
   struct Turn {
     float kept;
     std::uint8_t index;
@@ -118,10 +118,11 @@ void FindNearTurns(PreparedModel& model) {
   }
   std::sort(turns.begin(), turns.end(),
             [](const Turn& p, const Turn& q) { return p.kept != q.kept ? p.kept > q.kept : p.index < q.index; });
-  model.near_turns.clear();
+  NearTurns near;
   for (const Turn& turn : turns) {
-    if (!model.near_turns.try_push_back(turn.index)) break;
+    if (!near.try_push_back(turn.index)) break;
   }
+  return near;
 }
 
 }  // namespace wirepose

@@ -28,10 +28,13 @@ inline constexpr std::size_t kBoxTurns = 24;
 // The turn as a rigid motion of the model about the centre of its bounding box.
 [[nodiscard]] Pose TurnedModel(const PreparedModel& model, std::size_t k);
 
-// Fills model.near_turns: turns about the box centre that are no symmetry but leave the box nearly as it is and carry
+// Turns, as arguments of BoxTurn.
+using NearTurns = FixedVector<std::uint8_t, kMaxNearTurns>;
+
+// Turns about the box centre that are no symmetry but leave the box nearly as it is and carry
 // much of the wireframe onto itself, so that a view which shows little of the rest fits both poses. Turns that a
 // symmetry carries onto each other appear once; those that keep most of the wireframe come first. O(edges^2).
-void FindNearTurns(PreparedModel& model);
+[[nodiscard]] NearTurns FindNearTurns(const PreparedModel& model);
 
 }  // namespace wirepose
 

@@ -119,6 +119,7 @@ RecognizerError Recognizer::AddModel(const ModelView& model) {
   views_.push_back(model);
   models_.resize(models_.size() + 1);
   PrepareModel(model, models_.back());
+  near_turns_[models_.size() - 1] = FindNearTurns(models_.back());
   searched_ |= 1U << (models_.size() - 1);
   return RecognizerError::kOk;
 }

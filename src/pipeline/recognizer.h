@@ -14,6 +14,7 @@
 #include "capacities.h"
 #include "geometry/camera.h"
 #include "model/prepared_model.h"
+#include "model/symmetry.h"
 #include "pipeline/recognition.h"
 #include "stages/correspondences.h"
 #include "stages/depth_lines.h"
@@ -235,6 +236,7 @@ class Recognizer {
   Rectification rectification_;
   FixedVector<ModelView, kMaxModels> views_;
   FixedVector<PreparedModel, kMaxModels> models_;  // of the same models, in the same order
+  std::array<NearTurns, kMaxModels> near_turns_;   // of the same models
   std::uint32_t searched_ = 0;                     // bit m: models_[m] takes part
   static_assert(kMaxModels <= 32);
   ImageRegion region_;

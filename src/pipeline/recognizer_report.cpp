@@ -73,7 +73,8 @@ bool Recognizer::IsRival(const Candidate& candidate, const Rivals& rivals, float
 // Candidates come from lines, and few of them; a pose turned by a near symmetry is tried for its own sake.
 void Recognizer::FindTurnedRivals(const Candidate& candidate, float min_odds, Rivals& rivals) {
   const PreparedModel& model = models_[candidate.model];
-  if (model.near_turns.empty()) return;
+  const NearTurns& near_turns = near_turns_[candidate.model];
+  if (near_turns.empty()) return;
   const SceneEdges scene = Edges();
   const PoseScorer scorer(params_.hypotheses.score, scene, model);
   const auto support = [&](const Pose& T) {
@@ -83,7 +84,7 @@ void Recognizer::FindTurnedRivals(const Candidate& candidate, float min_odds, Ri
   };
   const float needed = params_.ambiguity.turned_support * support(candidate.pose.T_camera_model);
   const float tolerance = params_.ambiguity.distinct_share * model.view.diameter_m;
-  for (const std::uint8_t k : model.near_turns) {
+  for (const std::uint8_t k : near_turns) {
     const Pose start = candidate.pose.T_camera_model * TurnedModel(model, k);
     const bool known = std::any_of(rivals.begin(), rivals.end(), [&](const Rival& rival) {
       return AreNear(model, rival.T_camera_model, start, tolerance);

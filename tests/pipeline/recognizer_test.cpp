@@ -107,6 +107,60 @@ TEST_F(RecognizerTest, FindsObjectsInRenderedKitchens) {
   EXPECT_LE(false_alarms, 2);
 }
 
+// Of the poses that the box's symmetries make equal the prior's is reported, with the score, the covariance and the
+// line set that belong to it.
+TEST_F(RecognizerTest, APriorDecidesBetweenEqualPoses) {
+  AddModels();
+  const StereoImages frame = testing::GoldenFrame(0);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  ASSERT_EQ(result_.detections.size(), 1U);
+  const Detection alone = result_.detections[0];
+  const PreparedModel& model = TheRecognizer().prepared_model(0);
+  ASSERT_EQ(model.symmetries.size(), 4U);
+  const auto edges = [&](const Pose& T) {
+    std::vector<std::pair<int, Vector3d>> middles;
+    for (const SetMember& m : TheRecognizer().line_set(0)) {
+      middles.emplace_back(m.line, T * (0.5F * (model.edges[m.edge].a + model.edges[m.edge].b)).cast<double>());
+    }
+    return middles;
+  };
+  const auto expected = edges(alone.T_camera_model);
+  for (const Pose& S : model.symmetries) {
+    const PosePrior prior{alone.model_id, alone.T_camera_model * S};
+    ASSERT_EQ(TheRecognizer().Process(frame.left.view(), frame.right.view(), {&prior, 1}, nullptr, result_),
+              RecognizerError::kOk);
+    ASSERT_EQ(result_.detections.size(), 1U);
+    const Detection& d = result_.detections[0];
+    EXPECT_LT((d.T_camera_model.R - prior.T_camera_model.R).norm(), 1e-6);
+    EXPECT_LT((d.T_camera_model.t - prior.T_camera_model.t).norm(), 1e-6);
+    EXPECT_EQ(d.score, alone.score);
+    const auto found = edges(d.T_camera_model);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].first, expected[i].first);
+      EXPECT_LT((found[i].second - expected[i].second).norm(), 1e-3);
+    }
+  }
+}
+
+// Priors that are wrong, of a model that is not searched for, or behind the camera change nothing.
+TEST_F(RecognizerTest, WrongPriorsChangeNothing) {
+  AddModels();
+  const StereoImages frame = testing::GoldenFrame(0);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  const Detection alone = result_.detections[0];
+  std::vector<PosePrior> priors(20);
+  for (std::size_t i = 0; i < priors.size(); ++i) {
+    const double x = 0.05 * static_cast<double>(i);
+    priors[i] = {static_cast<std::uint32_t>(1 + i % 5), {ExpSo3({x, 2 * x, 1}), {x - 0.5, 0.3 - x, i == 7 ? -1 : 1}}};
+  }
+  ASSERT_EQ(TheRecognizer().Process(frame.left.view(), frame.right.view(), priors, nullptr, result_),
+            RecognizerError::kOk);
+  ASSERT_EQ(result_.detections.size(), 1U);
+  EXPECT_EQ(result_.detections[0].score, alone.score);
+  EXPECT_EQ(result_.detections[0].T_camera_model.t, alone.T_camera_model.t);
+}
+
 TEST_F(RecognizerTest, SameFrameSameBytes) {
   AddModels();
   const StereoImages frame = testing::GoldenFrame(0);

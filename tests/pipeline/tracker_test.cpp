@@ -149,7 +149,9 @@ TEST(Tracker, ModesDoNotFlip) {
     EXPECT_NEAR(out.modes[0].weight + out.modes[1].weight, 1, 1e-5);
     EXPECT_GE(out.modes[0].weight, out.modes[1].weight);
     EXPECT_EQ(out.T_camera_model.R, out.modes[0].T_camera_model.R);
-    if (last) EXPECT_LT(AngleBetween(*last, out.T_camera_model), 0.1) << "frame " << f;
+    if (last) {
+      EXPECT_LT(AngleBetween(*last, out.T_camera_model), 0.1) << "frame " << f;
+    }
     last = out.T_camera_model;
   }
 }
