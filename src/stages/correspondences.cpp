@@ -22,15 +22,16 @@ class Matcher {
         out_(out),
         budget_(params.max_steps) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (lines[i].has_depth) slack_[i] = SlackOf(lines[i]);
+      if (!lines[i].has_depth) continue;
+      length_[i] = lines[i].Length();
+      slack_[i] = SlackOf(lines[i]);
     }
   }
 
   [[nodiscard]] bool budget_hit() const { return budget_.hit(); }
 
   void MatchBase(std::size_t base) {
-    const Line3& line = lines_[base];
-    const float length = line.Length();
+    const float length = length_[base];
     const float slack = slack_[base];
     for (const PreparedSet& set : model_.sets) {
       const PreparedEdge& edge = model_.edges[set.base_edge];
@@ -100,7 +101,7 @@ class Matcher {
     }
     const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
     if (pair.farthest_end_m > member.farthest_end_m * (1 + params_.length_tolerance) + slack) return false;
-    return Fits(lines_[pair.other].Length(), slack_[pair.other], member.other_length_m, params_.min_other_cover);
+    return Fits(length_[pair.other], slack_[pair.other], member.other_length_m, params_.min_other_cover);
   }
 
   void Emit(const PreparedSet& set, const PreparedMember& member, const ImageLinePair& pair) {
@@ -129,7 +130,7 @@ class Matcher {
     const float angle = (pair.angle_rad - member.angle_rad) / (0.02F + pair.angle_sigma_rad);
     const float distance =
         (pair.distance_m - member.distance_m) / (0.003F + 0.01F * member.distance_m + pair.distance_sigma_m);
-    const float cover = std::min(1.0F, lines_[pair.other].Length() / member.other_length_m);
+    const float cover = std::min(1.0F, length_[pair.other] / member.other_length_m);
     return params_.cover_gain * cover - 0.5F * (angle * angle + distance * distance);
   }
 
@@ -168,7 +169,7 @@ class Matcher {
   const Lines3& lines_;
   const ImageLineSets& sets_;
   CorrespondingPairs& out_;
-  std::array<float, kMaxSegments> slack_{};
+  std::array<float, kMaxSegments> length_{}, slack_{};  // of lines with depth, m
   // Of the base line and base edge at hand.
   float base_cover_ = 0;
   std::uint16_t assigned_edge_ = kNoFace;

@@ -8,11 +8,11 @@
 namespace wirepose {
 namespace {
 
-float DistanceOfLines(const Line3& p, const Line3& q, float sine) {
+// `u`, `v`: the lines' directions.
+float DistanceOfLines(const Line3& p, const Line3& q, const Vector3& u, const Vector3& v, float sine) {
   const Vector3 between = 0.5F * (q.a + q.b) - 0.5F * (p.a + p.b);
-  const Vector3 u = p.Direction();
   if (sine < 0.2F) return (between - between.dot(u) * u).norm();  // nearly parallel: distance of q's middle from p
-  const Vector3 n = u.cross(q.Direction());
+  const Vector3 n = u.cross(v);
   return std::abs(between.dot(n)) / n.norm();
 }
 
@@ -22,7 +22,7 @@ float FarthestEnds(const Line3& p, const Line3& q) {
   return std::sqrt(squared);
 }
 
-// The nearest pair of end points in the image, and how far apart they are.
+// The nearest pair of end points in the image, and how far apart they are, squared.
 float NearestEnds(const Segment2& p, const Segment2& q, LineEnd& p_end, LineEnd& q_end) {
   const Vector2 pe[2] = {p.a, p.b};
   const Vector2 qe[2] = {q.a, q.b};
@@ -36,22 +36,22 @@ float NearestEnds(const Segment2& p, const Segment2& q, LineEnd& p_end, LineEnd&
       q_end = static_cast<LineEnd>(j);
     }
   }
-  return std::sqrt(nearest);
+  return nearest;
 }
 
-// Sine of the angle between two segments in the image.
-float ImageSine(const Segment2& p, const Segment2& q) {
-  const Vector2 u = p.Direction(), v = q.Direction();
-  return std::abs(u.x() * v.y() - u.y() * v.x());
-}
+// Sine of the angle between two directions in the image.
+float ImageSine(const Vector2& u, const Vector2& v) { return std::abs(u.x() * v.y() - u.y() * v.x()); }
 
 class PairMaker {
  public:
   PairMaker(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines)
       : params_(params), lines_(lines) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      log_length_[i] = Log(lines[i].segment.Length());
+      length_px_[i] = lines[i].segment.Length();
+      image_direction_[i] = lines[i].segment.Direction();
+      log_length_[i] = Log(length_px_[i]);
       if (!lines[i].has_depth) continue;
+      direction_[i] = lines[i].Direction();
       direction_sigma_[i] = DirectionSigma(camera, lines[i]);
       depth_sigma_[i] = DepthSigma(camera, lines[i]);
       log_angle_[i] = LogAngle(direction_sigma_[i]);
@@ -67,46 +67,44 @@ class PairMaker {
     return bound;
   }
 
-  // False when the two lines are not related.
-  bool Make(std::size_t b, std::size_t o, ImageLinePair& pair) const {
+  // All but the metric part of the pair; with its quality, which tells whether that part is worth the work. False when
+  // the two lines are not related.
+  bool Rate(std::size_t b, std::size_t o, ImageLinePair& pair) const {
     const Line3& base = lines_[b];
     const Line3& other = lines_[o];
     pair = {};
     pair.base = static_cast<std::uint16_t>(b);
     pair.other = static_cast<std::uint16_t>(o);
-    const float ends = NearestEnds(base.segment, other.segment, pair.base_end, pair.other_end);
-    const float reach =
-        std::min(params_.junction_px, 4 + 0.3F * std::min(base.segment.Length(), other.segment.Length()));
-    const bool junction = ends < reach && ImageSine(base.segment, other.segment) > 0.2F;
+    const float ends_squared = NearestEnds(base.segment, other.segment, pair.base_end, pair.other_end);
+    const float reach = std::min(params_.junction_px, 4 + 0.3F * std::min(length_px_[b], length_px_[o]));
+    const bool junction = std::sqrt(ends_squared) < reach && ImageSine(image_direction_[b], image_direction_[o]) > 0.2F;
     if (!junction) pair.base_end = pair.other_end = LineEnd::kNone;
     pair.quality = log_length_[b] + log_length_[o] + (junction ? params_.junction_quality : 0.0F);
     if (!other.has_depth) return junction;
     pair.metric = true;
-    return Measure(b, o, pair);
-  }
-
- private:
-  bool Measure(std::size_t b, std::size_t o, ImageLinePair& pair) const {
-    const Line3& base = lines_[b];
-    const Line3& other = lines_[o];
     pair.farthest_end_m = FarthestEnds(base, other);
     if (pair.farthest_end_m > params_.max_reach_m + 3 * (depth_sigma_[b] + depth_sigma_[o])) return false;
-    const Vector3 u = base.Direction(), v = other.Direction();
-    const float sine = std::min(1.0F, u.cross(v).norm());
-    const float cosine = std::abs(u.dot(v));
-    // atan2 of non-negative numbers by the rational approximation below: good to 0.005 rad, far below any sigma here.
-    pair.angle_rad = Angle(sine, cosine);
     pair.angle_sigma_rad =
         std::sqrt(direction_sigma_[b] * direction_sigma_[b] + direction_sigma_[o] * direction_sigma_[o]);
-    pair.kind = pair.angle_rad < params_.parallel_rad + pair.angle_sigma_rad ? LineSetKind::kParallel
-                                                                             : LineSetKind::kIntersecting;
-    pair.distance_m = DistanceOfLines(base, other, sine);
     pair.distance_sigma_m = std::sqrt(depth_sigma_[b] * depth_sigma_[b] + depth_sigma_[o] * depth_sigma_[o]);
     // Normalisation of the two Gaussians that V is compared with, relative to a rad of 1 and a distance of 1 cm.
     pair.quality -= LogAngle(pair.angle_sigma_rad) + LogDistance(pair.distance_sigma_m);
     return true;
   }
 
+  // The parameter vector of two lines with depth.
+  void Measure(std::size_t b, std::size_t o, ImageLinePair& pair) const {
+    const Vector3 &u = direction_[b], &v = direction_[o];
+    const float sine = std::min(1.0F, u.cross(v).norm());
+    const float cosine = std::abs(u.dot(v));
+    // atan2 of non-negative numbers by the rational approximation below: good to 0.005 rad, far below any sigma here.
+    pair.angle_rad = Angle(sine, cosine);
+    pair.kind = pair.angle_rad < params_.parallel_rad + pair.angle_sigma_rad ? LineSetKind::kParallel
+                                                                             : LineSetKind::kIntersecting;
+    pair.distance_m = DistanceOfLines(lines_[b], lines_[o], u, v, sine);
+  }
+
+ private:
   static float LogAngle(float sigma_rad) { return Log(sigma_rad + 0.02F); }
   static float LogDistance(float sigma_m) { return Log((sigma_m + 0.003F) / 0.01F); }
 
@@ -120,6 +118,9 @@ class PairMaker {
   const LineSetParams& params_;
   const Lines3& lines_;
   std::array<float, kMaxSegments> direction_sigma_{}, depth_sigma_{}, log_length_{}, log_angle_{}, log_distance_{};
+  std::array<float, kMaxSegments> length_px_{};
+  std::array<Vector2, kMaxSegments> image_direction_;
+  std::array<Vector3, kMaxSegments> direction_;  // of lines with depth
 };
 
 // Counting sort of the kept pairs by base line. Within a base they stay in the order of quality.
@@ -160,10 +161,15 @@ void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, co
     if (!lines[b].has_depth || lines[b].segment.Length() < params.min_depth_length_px) continue;
     for (std::size_t o = 0; o < lines.size(); ++o) {
       ImageLinePair pair;
-      pair.quality = maker.QualityBound(b, o) + 1e-3F;
-      if (!out.kept.WouldKeep(pair)) continue;
       // Of two lines with depth the longer one, which comes first, is the base: model sets hold both orders.
-      if (o == b || (o < b && lines[o].has_depth) || !maker.Make(b, o, pair)) continue;
+      if (o == b || (o < b && lines[o].has_depth)) continue;
+      pair.quality = maker.QualityBound(b, o) + 1e-3F;
+      if (!out.kept.WouldKeep(pair) || !maker.Rate(b, o, pair)) continue;
+      if (!out.kept.WouldKeep(pair)) {
+        out.kept.CountDropped(1);
+        continue;
+      }
+      if (pair.metric) maker.Measure(b, o, pair);
       out.kept.Push(pair);
     }
   }
