@@ -13,13 +13,13 @@ constexpr float kGain = 48;
 constexpr float kNoiseFloor = 4;  // grey levels
 
 constexpr int kWindow = 2 * kRadius + 1;
-constexpr int kPadded = kMaxImageWidth + kWindow;
+using PaddedRow = std::array<std::int32_t, kMaxImageWidth + kWindow - 1>;
 
-// Sums of values and squares over the columns of a window that slides down the image, and their running totals along
-// the row, padded by kRadius repeated columns at both ends.
+// Sums of values and squares over the columns of a window that slides down the image, and over the window itself.
 struct WindowSums {
   std::array<std::int32_t, kMaxImageWidth> sum{}, square{};
-  std::array<std::int32_t, kPadded> sum_total{}, square_total{};
+  std::array<std::int32_t, kMaxImageWidth> window_sum, window_square;
+  std::array<PaddedRow, 2> work;
 };
 
 // Adds row `in` to the column sums and takes row `out` away.
@@ -31,25 +31,33 @@ WIREPOSE_VECTOR_KERNEL void Slide(const std::uint8_t* in, const std::uint8_t* ou
   }
 }
 
-// total[i] = sum of padded columns before i.
-void Accumulate(const std::array<std::int32_t, kMaxImageWidth>& columns, int width,
-                std::array<std::int32_t, kPadded>& total) {
-  std::int32_t running = 0;
-  std::size_t k = 0;
-  total[k++] = 0;
-  const auto add = [&](std::int32_t value) { total[k++] = running += value; };
-  for (int i = 0; i < kRadius; ++i) add(columns[0]);
-  for (int x = 0; x < width; ++x) add(columns[static_cast<std::size_t>(x)]);
-  for (int i = 0; i < kRadius; ++i) add(columns[static_cast<std::size_t>(width - 1)]);
+// out[x] = sum of columns x - kRadius to x + kRadius, the first and the last one repeated beyond the borders. Sums of
+// two, four and eight neighbours first: fifteen columns in five vector additions.
+inline void SumWindow(const std::array<std::int32_t, kMaxImageWidth>& columns, int width, PaddedRow& a, PaddedRow& b,
+                      std::array<std::int32_t, kMaxImageWidth>& out) {
+  static_assert(kRadius == 7);
+  const int padded = width + kWindow - 1;
+  for (int i = 0; i < kRadius; ++i) {
+    a[static_cast<std::size_t>(i)] = columns[0];
+    a[static_cast<std::size_t>(kRadius + width + i)] = columns[static_cast<std::size_t>(width - 1)];
+  }
+  std::copy(columns.begin(), columns.begin() + width, a.begin() + kRadius);
+  std::int32_t *p = a.data(), *q = b.data();
+  for (int i = 0; i < width; ++i) out[static_cast<std::size_t>(i)] = -p[i + kRadius];
+  for (int i = 0; i < padded - 1; ++i) q[i] = p[i] + p[i + 1];
+  for (int i = 0; i < padded - 3; ++i) p[i] = q[i] + q[i + 2];
+  for (int i = 0; i < padded - 7; ++i) q[i] = p[i] + p[i + 4];
+  for (int i = 0; i < width; ++i) out[static_cast<std::size_t>(i)] += q[i] + q[i + kRadius];
 }
 
-WIREPOSE_VECTOR_KERNEL void NormalizeRow(const std::uint8_t* in, const WindowSums& w, int width, std::uint8_t* out) {
+WIREPOSE_VECTOR_KERNEL void NormalizeRow(const std::uint8_t* in, int width, WindowSums& w, std::uint8_t* out) {
+  SumWindow(w.sum, width, w.work[0], w.work[1], w.window_sum);
+  SumWindow(w.square, width, w.work[0], w.work[1], w.window_square);
   constexpr float kScale = 1.0F / (kWindow * kWindow);
-  const std::int32_t* sum = w.sum_total.data();
-  const std::int32_t* square = w.square_total.data();
   for (int x = 0; x < width; ++x) {
-    const float mean = static_cast<float>(sum[x + kWindow] - sum[x]) * kScale;
-    const float variance = static_cast<float>(square[x + kWindow] - square[x]) * kScale - mean * mean;
+    const auto i = static_cast<std::size_t>(x);
+    const float mean = static_cast<float>(w.window_sum[i]) * kScale;
+    const float variance = static_cast<float>(w.window_square[i]) * kScale - mean * mean;
     const float deviation = std::sqrt(variance > 0 ? variance : 0.0F);
     const float value = 128.5F + kGain * (static_cast<float>(in[x]) - mean) / (deviation + kNoiseFloor);
     const int rounded = static_cast<int>(value);
@@ -66,9 +74,7 @@ void NormalizeLocally(ImageView image, NormalizedPlane& out) {
   for (int y = -kRadius; y <= kRadius; ++y) Slide(row(y), nothing.data(), image.width, w);
   for (int y = 0; y < image.height; ++y) {
     if (y > 0) Slide(row(y + kRadius), row(y - 1 - kRadius), image.width, w);
-    Accumulate(w.sum, image.width, w.sum_total);
-    Accumulate(w.square, image.width, w.square_total);
-    NormalizeRow(image.row(y), w, image.width, out.data() + static_cast<std::ptrdiff_t>(y) * kMaxImageWidth);
+    NormalizeRow(image.row(y), image.width, w, out.data() + static_cast<std::ptrdiff_t>(y) * kMaxImageWidth);
   }
 }
 
