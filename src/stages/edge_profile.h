@@ -47,7 +47,7 @@ class EdgeProfile {
     return value_[static_cast<std::size_t>(k + 1)] - value_[static_cast<std::size_t>(k - 1)];
   }
 
-  std::array<float, 2 * kMaxRange + 5> value_;
+  std::array<float, (2 * kMaxRange + 5 + 7) / 8 * 8> value_;  // whole vectors of lanes
   int count_ = 0, middle_ = 0;
 };
 
