@@ -36,19 +36,24 @@ WIREPOSE_VECTOR_KERNEL void FillDifferences(const Scratch::Row& left, const std:
   }
 }
 
-WIREPOSE_VECTOR_KERNEL void SumRows(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, int count,
-                                    std::uint16_t* out) {
-  for (int i = 0; i < count; ++i) out[i] = static_cast<std::uint16_t>(a[i] + b[i] + c[i]);
+// Sum of one column of three pixels, all disparities.
+inline void SumColumn(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, std::uint16_t* out) {
+  for (int d = 0; d < kDepth; ++d) out[d] = static_cast<std::uint16_t>(a[d] + b[d] + c[d]);
 }
 
-// cost[x] = column[x - 1] + column[x] + column[x + 1], the border repeated.
-WIREPOSE_VECTOR_KERNEL void SumColumns(const std::uint16_t* column, int width, std::uint16_t* cost) {
+// cost[x] = sum of columns x - 1, x and x + 1 of three rows of differences, the border repeated.
+WIREPOSE_VECTOR_KERNEL void SumNeighbours(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c,
+                                          int width, std::uint16_t* __restrict cost) {
+  std::uint16_t columns[3][kDepth];
+  SumColumn(a, b, c, columns[0]);
+  SumColumn(a, b, c, columns[2]);  // stands before the first
   for (int x = 0; x < width; ++x) {
-    const std::uint16_t* before = column + std::max(x - 1, 0) * kDepth;
-    const std::uint16_t* here = column + x * kDepth;
-    const std::uint16_t* after = column + std::min(x + 1, width - 1) * kDepth;
+    const int next = std::min(x + 1, width - 1) * kDepth;
+    SumColumn(a + next, b + next, c + next, columns[(x + 1) % 3]);
     std::uint16_t* out = cost + x * kDepth;
-    for (int d = 0; d < kDepth; ++d) out[d] = static_cast<std::uint16_t>(before[d] + here[d] + after[d]);
+    for (int d = 0; d < kDepth; ++d) {
+      out[d] = static_cast<std::uint16_t>(columns[0][d] + columns[1][d] + columns[2][d]);
+    }
   }
 }
 
@@ -83,25 +88,25 @@ void Reset(Scratch::Path& path) {
 // Sums the three paths of a row into scratch.sum; rows alternate in `parity`.
 WIREPOSE_VECTOR_KERNEL void SumPaths(Steps steps, int width, std::size_t parity, Scratch& scratch) {
   std::fill(scratch.sum.begin(), scratch.sum.begin() + static_cast<std::ptrdiff_t>(width) * kDepth, std::uint16_t{0});
-  Scratch::Path path[2];
-  Reset(path[0]);
-  Reset(path[1]);
-  std::uint16_t lowest = 0;
+  Scratch::Path from_left[2], from_right[2];
+  for (std::size_t k = 0; k < 2; ++k) {
+    Reset(from_left[k]);
+    Reset(from_right[k]);
+  }
+  std::uint16_t left_lowest = 0, right_lowest = 0;
+  // Both directions at once: each waits for its own last step only.
   for (int x = 0; x < width; ++x) {
     const std::uint16_t* cost = scratch.cost.data() + x * kDepth;
     std::uint16_t* sum = scratch.sum.data() + x * kDepth;
-    lowest = Advance(cost, path[x % 2].data() + 1, lowest, steps, path[(x + 1) % 2].data() + 1, sum);
+    left_lowest =
+        Advance(cost, from_left[x % 2].data() + 1, left_lowest, steps, from_left[(x + 1) % 2].data() + 1, sum);
     const auto column = static_cast<std::size_t>(x);
     std::uint16_t& above_lowest = scratch.above_lowest[column];
     above_lowest = Advance(cost, scratch.above[1 - parity][column].data() + 1, above_lowest, steps,
                            scratch.above[parity][column].data() + 1, sum);
-  }
-  Reset(path[0]);
-  Reset(path[1]);
-  lowest = 0;
-  for (int x = width - 1; x >= 0; --x) {
-    lowest = Advance(scratch.cost.data() + x * kDepth, path[x % 2].data() + 1, lowest, steps,
-                     path[(x + 1) % 2].data() + 1, scratch.sum.data() + x * kDepth);
+    const int mirrored = (width - 1 - x) * kDepth;
+    right_lowest = Advance(scratch.cost.data() + mirrored, from_right[x % 2].data() + 1, right_lowest, steps,
+                           from_right[(x + 1) % 2].data() + 1, scratch.sum.data() + mirrored);
   }
 }
 
@@ -163,21 +168,25 @@ void WriteRow(int max_asymmetry, int width, const Scratch& scratch, std::uint16_
   }
 }
 
-// A pixel that fewer than two of its four neighbours confirm is unknown.
-void DropSpeckles(const DisparityMap& raw, int j, std::uint16_t* out) {
-  constexpr int kTolerance = static_cast<int>(2 * DisparityMap::kOne);
-  const auto at = [&](int x, int y) {
-    return int{raw.disparity[static_cast<std::size_t>(y * DisparityMap::kMaxWidth + x)]};
-  };
-  for (int x = 0; x < raw.width; ++x) {
-    const int here = at(x, j);
-    int confirmed = 0;
-    if (x > 0) confirmed += std::abs(at(x - 1, j) - here) <= kTolerance ? 1 : 0;
-    if (x + 1 < raw.width) confirmed += std::abs(at(x + 1, j) - here) <= kTolerance ? 1 : 0;
-    if (j > 0) confirmed += std::abs(at(x, j - 1) - here) <= kTolerance ? 1 : 0;
-    if (j + 1 < raw.height) confirmed += std::abs(at(x, j + 1) - here) <= kTolerance ? 1 : 0;
-    out[x] = static_cast<std::uint16_t>(confirmed >= 2 ? here : int{DisparityMap::kUnknown});
+constexpr auto kTolerance = static_cast<std::uint16_t>(2 * DisparityMap::kOne);
+
+inline std::uint16_t Agree(std::uint16_t a, std::uint16_t b) {
+  const auto difference = static_cast<std::uint16_t>(a > b ? a - b : b - a);
+  return difference <= kTolerance ? 1 : 0;
+}
+
+// A pixel that fewer than two of its four neighbours confirm is unknown. `use_above`, `use_below`: 1 where the image
+// has such a row, else 0.
+WIREPOSE_VECTOR_KERNEL void DropSpeckles(const std::uint16_t* above, const std::uint16_t* here,
+                                         const std::uint16_t* below, std::uint16_t use_above, std::uint16_t use_below,
+                                         int width, std::uint16_t* __restrict out) {
+  for (int x = 0; x < width; ++x) {
+    out[x] =
+        static_cast<std::uint16_t>((Agree(above[x], here[x]) & use_above) + (Agree(below[x], here[x]) & use_below));
   }
+  for (int x = 1; x < width; ++x) out[x] = static_cast<std::uint16_t>(out[x] + Agree(here[x - 1], here[x]));
+  for (int x = 0; x < width - 1; ++x) out[x] = static_cast<std::uint16_t>(out[x] + Agree(here[x + 1], here[x]));
+  for (int x = 0; x < width; ++x) out[x] = out[x] >= 2 ? here[x] : DisparityMap::kUnknown;
 }
 
 void ReadDifferences(const DisparityMapParams& params, const NormalizedPlane& left, const NormalizedPlane& right, int j,
@@ -209,16 +218,19 @@ void ComputeDisparityMap(const DisparityMapParams& params, int width, int height
   };
   for (int j = 0; j < std::min(2, out.height); ++j) ReadDifferences(params, left, right, j, out.width, scratch);
   for (int j = 0; j < out.height; ++j) {
-    SumRows(row(j - 1), row(j), row(j + 1), out.width * kDepth, scratch.column.data());
-    SumColumns(scratch.column.data(), out.width, scratch.cost.data());
+    SumNeighbours(row(j - 1), row(j), row(j + 1), out.width, scratch.cost.data());
     if (j + 2 < out.height) ReadDifferences(params, left, right, j + 2, out.width, scratch);
     SumPaths({params.small_step, params.large_step}, out.width, static_cast<std::size_t>(j % 2), scratch);
     ChooseBest(out.width, scratch);
     WriteRow(params.max_asymmetry, out.width, scratch,
              raw.disparity.data() + static_cast<std::ptrdiff_t>(j) * DisparityMap::kMaxWidth);
   }
+  constexpr std::ptrdiff_t kStride = DisparityMap::kMaxWidth;
   for (int j = 0; j < out.height; ++j) {
-    DropSpeckles(raw, j, out.disparity.data() + static_cast<std::ptrdiff_t>(j) * DisparityMap::kMaxWidth);
+    const std::uint16_t* here = raw.disparity.data() + j * kStride;
+    const bool first = j == 0, last = j + 1 == out.height;
+    DropSpeckles(first ? here : here - kStride, here, last ? here : here + kStride, first ? 0 : 1, last ? 0 : 1,
+                 out.width, out.disparity.data() + j * kStride);
   }
 }
 

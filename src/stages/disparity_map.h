@@ -44,7 +44,6 @@ struct DisparityScratch {
   using Path = std::array<std::uint16_t, kDepth + 2>;  // a guard before the first disparity and after the last
 
   std::array<std::array<std::uint8_t, std::size_t{kWidth} * kDepth>, 3> difference;  // of three rows of pixels
-  std::array<std::uint16_t, std::size_t{kWidth} * kDepth> column;                    // their sum
   std::array<std::uint16_t, std::size_t{kWidth} * kDepth> cost;                      // summed over 3 x 3 pixels
   std::array<std::uint16_t, std::size_t{kWidth} * kDepth> sum;                       // over the paths
   std::array<std::array<Path, kWidth>, 2> above;  // path costs from above, of this row and the one before

@@ -61,6 +61,7 @@ bool EdgeProfile::Read(const SmoothPlane& plane, int width, int height, const Ve
     places.top[k] = Both(top);
     places.bottom[k] = Both(bottom);
   }
+  for (auto k = static_cast<std::size_t>(count_); k < kLanes; ++k) places.top[k] = places.bottom[k] = 0;
   Blend(places, value_.data());
   return true;
 }

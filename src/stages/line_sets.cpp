@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/check.h"
 #include "base/portable_math.h"
 
 namespace wirepose {
@@ -92,6 +93,14 @@ class PairMaker {
     return true;
   }
 
+  // The whole pair of two lines that are related.
+  void Make(std::size_t b, std::size_t o, ImageLinePair& pair) const {
+    const bool related = Rate(b, o, pair);
+    Check(related);  // Rate said so when the pair was ranked
+    if (pair.metric) Measure(b, o, pair);
+  }
+
+ private:
   // The parameter vector of two lines with depth.
   void Measure(std::size_t b, std::size_t o, ImageLinePair& pair) const {
     const Vector3 &u = direction_[b], &v = direction_[o];
@@ -104,7 +113,6 @@ class PairMaker {
     pair.distance_m = DistanceOfLines(lines_[b], lines_[o], u, v, sine);
   }
 
- private:
   static float LogAngle(float sigma_rad) { return Log(sigma_rad + 0.02F); }
   static float LogDistance(float sigma_m) { return Log((sigma_m + 0.003F) / 0.01F); }
 
@@ -123,17 +131,18 @@ class PairMaker {
   std::array<Vector3, kMaxSegments> direction_;  // of lines with depth
 };
 
-// Counting sort of the kept pairs by base line. Within a base they stay in the order of quality.
-void GroupByBase(std::size_t line_count, ImageLineSets& out) {
+// Counting sort of the kept pairs by base line. Within a base they stay in the order of quality. What was kept is
+// measured now.
+void GroupByBase(const PairMaker& maker, std::size_t line_count, ImageLineSets& out) {
   const auto& kept = out.kept.Sorted();
   out.first.fill(0);
-  for (const ImageLinePair& pair : kept) ++out.first[pair.base + 1U];
+  for (const RankedImagePair& pair : kept) ++out.first[pair.base + 1U];
   for (std::size_t b = 0; b < line_count; ++b)
     out.first[b + 1] = static_cast<std::uint16_t>(out.first[b + 1] + out.first[b]);
   out.pairs.resize(kept.size());
   std::array<std::uint16_t, kMaxSegments> next;
   std::copy(out.first.begin(), out.first.end() - 1, next.begin());
-  for (const ImageLinePair& pair : kept) out.pairs[next[pair.base]++] = pair;
+  for (const RankedImagePair& pair : kept) maker.Make(pair.base, pair.other, out.pairs[next[pair.base]++]);
 }
 
 }  // namespace
@@ -160,21 +169,16 @@ void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, co
   for (std::size_t b = 0; b < lines.size(); ++b) {
     if (!lines[b].has_depth || lines[b].segment.Length() < params.min_depth_length_px) continue;
     for (std::size_t o = 0; o < lines.size(); ++o) {
-      ImageLinePair pair;
       // Of two lines with depth the longer one, which comes first, is the base: model sets hold both orders.
       if (o == b || (o < b && lines[o].has_depth)) continue;
-      pair.quality = maker.QualityBound(b, o) + 1e-3F;
-      if (!out.kept.WouldKeep(pair) || !maker.Rate(b, o, pair)) continue;
-      if (!out.kept.WouldKeep(pair)) {
-        out.kept.CountDropped(1);
-        continue;
-      }
-      if (pair.metric) maker.Measure(b, o, pair);
-      out.kept.Push(pair);
+      if (!out.kept.WouldKeep({maker.QualityBound(b, o) + 1e-3F, 0, 0})) continue;
+      ImageLinePair pair;
+      if (!maker.Rate(b, o, pair)) continue;
+      out.kept.Push({pair.quality, pair.base, pair.other});
     }
   }
   out.dropped = out.kept.dropped();
-  GroupByBase(lines.size(), out);
+  GroupByBase(maker, lines.size(), out);
 }
 
 }  // namespace wirepose

@@ -40,8 +40,14 @@ struct ImageLinePair {
   float quality = 0;         // log of what the pair tells: long lines, well known V
 };
 
+// A pair before it is measured: all that the choice of pairs needs.
+struct RankedImagePair {
+  float quality = 0;
+  std::uint16_t base = 0, other = 0;
+};
+
 struct BetterImagePair {
-  bool operator()(const ImageLinePair& p, const ImageLinePair& q) const {
+  bool operator()(const RankedImagePair& p, const RankedImagePair& q) const {
     if (p.quality != q.quality) return p.quality > q.quality;
     return p.base != q.base ? p.base < q.base : p.other < q.other;
   }
@@ -49,7 +55,7 @@ struct BetterImagePair {
 
 // All pairs, grouped by base line: the set of base line b is pairs [first[b], first[b + 1]), by falling quality.
 struct ImageLineSets {
-  KeepBest<ImageLinePair, kMaxImageLinePairs, BetterImagePair> kept;  // work space: unordered
+  KeepBest<RankedImagePair, kMaxImageLinePairs, BetterImagePair> kept;  // work space: unordered
   FixedVector<ImageLinePair, kMaxImageLinePairs> pairs;
   std::array<std::uint16_t, kMaxSegments + 1> first{};
   std::uint32_t dropped = 0;

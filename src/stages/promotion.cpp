@@ -4,17 +4,42 @@
 #include <array>
 #include <cmath>
 
+#include "base/simd.h"
+
 namespace wirepose {
 namespace {
 
 // Poses that are promoted; the rest of the hypotheses is too weak to matter.
 constexpr std::size_t kMaxPromoted = 2 * kMaxCandidates;
 
+// The lines' image ends, number by number.
+struct SegmentEnds {
+  std::array<float, kMaxSegments> ax, ay, bx, by;
+};
+
+// Marks the segments whose ends both lie within `max_offset` of the line through `origin` along the unit vector
+// `direction`.
+WIREPOSE_VECTOR_KERNEL void MarkNear(const SegmentEnds& ends, std::size_t count, const Vector2& origin,
+                                     const Vector2& direction, float max_offset, std::uint8_t* near) {
+  const float px = origin.x(), py = origin.y(), ux = direction.x(), uy = direction.y();
+  for (std::size_t i = 0; i < count; ++i) {
+    const float a = std::abs((ends.ax[i] - px) * uy - (ends.ay[i] - py) * ux);
+    const float b = std::abs((ends.bx[i] - px) * uy - (ends.by[i] - py) * ux);
+    const float farther = a > b ? a : b;
+    near[i] = farther <= max_offset ? 1 : 0;
+  }
+}
+
 class Promoter {
  public:
   Promoter(const PromotionParams& params, const PoseScorer& scorer, const RectifiedCamera& camera,
            const PreparedModel& model, const Lines3& lines)
-      : params_(params), scorer_(scorer), camera_(camera), model_(model), lines_(lines) {}
+      : params_(params), scorer_(scorer), camera_(camera), model_(model), lines_(lines) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const Segment2& s = lines[i].segment;
+      ends_.ax[i] = s.a.x(), ends_.ay[i] = s.a.y(), ends_.bx[i] = s.b.x(), ends_.by[i] = s.b.y();
+    }
+  }
 
   // False when the aligned pose fails.
   bool Promote(const Hypothesis& hypothesis, CorrespondingSet& set) {
@@ -75,12 +100,13 @@ class Promoter {
     const Vector2 u = d / length;
     const Line3* best = nullptr;
     float best_overlap = 4;
-    for (const Line3& line : lines_) {
+    MarkNear(ends_, lines_.size(), p.a, u, max_offset, near_.data());
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      if (near_[i] == 0) continue;
+      const Line3& line = lines_[i];
       const Segment2& s = line.segment;
       const float across_a = std::abs((s.a - p.a).x() * u.y() - (s.a - p.a).y() * u.x());
-      if (across_a > max_offset) continue;
       const float across_b = std::abs((s.b - p.a).x() * u.y() - (s.b - p.a).y() * u.x());
-      if (across_b > max_offset) continue;
       const float s0 = (s.a - p.a).dot(u), s1 = (s.b - p.a).dot(u);
       if (std::abs(s1 - s0) < params_.min_cosine * s.Length()) continue;
       const float overlap = std::min(length, std::max(s0, s1)) - std::max(0.0F, std::min(s0, s1));
@@ -177,6 +203,8 @@ class Promoter {
   const RectifiedCamera& camera_;
   const PreparedModel& model_;
   const Lines3& lines_;
+  SegmentEnds ends_;
+  std::array<std::uint8_t, kMaxSegments> near_;
   FixedVector<Found, kMaxModelEdges> found_;
 };
 
