@@ -8,7 +8,6 @@ namespace {
 // One column a track, and one a detection that stands for "none of them".
 constexpr std::size_t kColumns = kMaxTracks + kMaxDetections;
 constexpr std::size_t kFree = kMaxDetections;  // row of a column that nobody has
-constexpr double kUnmatched = 1e5;             // dearer than any sum of matches, cheaper than an impossible one
 
 class Assigner {
  public:
@@ -62,7 +61,7 @@ class Assigner {
  private:
   [[nodiscard]] double Cost(std::size_t row, std::size_t column) const {
     if (column < costs_.tracks) return costs_.cost[row][column];
-    return column - costs_.tracks == row ? kUnmatched : MatchCosts::kNoMatch;
+    return column - costs_.tracks == row ? MatchCosts::kUnmatched : MatchCosts::kNoMatch;
   }
 
   const MatchCosts& costs_;

@@ -43,8 +43,14 @@ void SetPose(const Pose& T, Detection& detection) {
   detection.T_camera_model = T;
 }
 
-// Cost of a detection that lies at the place but is turned: dearer than any that fits, the farther the dearer.
-constexpr double kTurnedCost = 200;
+// Cost of a detection that lies at the place but is turned, up to twice that at the margin: dearer than any that fits,
+// cheaper than none, and two of them dearer than one that fits and one unmatched: a false alarm beside an object does
+// not push the object to another track.
+constexpr double kTurnedCost = 110;
+static_assert(2 * kTurnedCost <= MatchCosts::kUnmatched);
+
+// One false alarm at the place of an object that is missed does not turn its track; so many in a row do.
+constexpr std::uint8_t kContradictions = 3;
 
 }  // namespace
 
@@ -196,11 +202,13 @@ void Tracker::Learn(CaptureTime time, const Detection& detection, Track& track) 
   const bool fits = FitOf(track.motion, detection.T_camera_model, detection.covariance).distance2 <= params_.gate;
   if (fits) {
     Correct(detection.T_camera_model, detection.covariance, track.motion);
-  } else {
-    // The frame knows better. Where to and how fast it goes is still known.
+    track.contradicted = 0;
+  } else if (++track.contradicted >= kContradictions) {
+    // The frames know better. Where to and how fast it goes is still known.
     const Vector6d velocity = track.motion.velocity;
     track.motion = StartMotion(params_.motion, detection.T_camera_model, detection.covariance);
     track.motion.velocity.tail<3>() = velocity.tail<3>();
+    track.contradicted = 0;
     ++statistics_.turned;
   }
   const float limit = LogOdds(params_.max_existence);

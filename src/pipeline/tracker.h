@@ -34,7 +34,8 @@ struct Track {
   float log_odds = 0;             // of its existence
   float found = 0, expected = 0;  // frames it was found in, and frames it should have been found in
   CaptureTime last_seen{};
-  bool seen_now = false;  // in the last frame
+  bool seen_now = false;          // in the last frame
+  std::uint8_t contradicted = 0;  // detections in a row that lay at the place but were turned
 
   [[nodiscard]] float existence() const;
 };
@@ -42,7 +43,7 @@ struct Track {
 struct TrackerStatistics {
   std::uint32_t started = 0, ended = 0;
   std::uint32_t dropped = 0;   // given up, or never begun, because the table was full
-  std::uint32_t turned = 0;    // the frame contradicted the track's orientation
+  std::uint32_t turned = 0;    // frames contradicted a track's orientation until it gave way
   std::uint32_t late = 0;      // frames older than their predecessor: labelled, but nothing is learned from them
   std::uint32_t restarts = 0;  // steps of the capture clock, after which all is forgotten
 };

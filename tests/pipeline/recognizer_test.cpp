@@ -152,7 +152,8 @@ TEST_F(RecognizerTest, WrongPriorsChangeNothing) {
   std::vector<PosePrior> priors(20);
   for (std::size_t i = 0; i < priors.size(); ++i) {
     const double x = 0.05 * static_cast<double>(i);
-    priors[i] = {static_cast<std::uint32_t>(1 + i % 5), {ExpSo3({x, 2 * x, 1}), {x - 0.5, 0.3 - x, i == 7 ? -1 : 1}}};
+    priors[i] = {static_cast<std::uint32_t>(1 + i % 5),
+                 {ExpSo3({x, 2 * x, 1}), {x - 0.5, 0.3 - x, i == 7 ? -1.0 : 1.0}}};
   }
   ASSERT_EQ(TheRecognizer().Process(frame.left.view(), frame.right.view(), priors, nullptr, result_),
             RecognizerError::kOk);

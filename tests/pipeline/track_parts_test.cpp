@@ -61,7 +61,7 @@ TEST(TrackMotion, BlocksAreTheTextbookFilter) {
   }
 }
 
-// As many matches as possible, then the least sum: all assignments are tried.
+// The least sum: all assignments are tried.
 TEST(Assignment, IsTheBestOfAll) {
   TrackWorld world(4);
   for (int i = 0; i < 2000; ++i) {
@@ -76,7 +76,7 @@ TEST(Assignment, IsTheBestOfAll) {
     const auto total = [&](const auto& track_of) {
       double sum = 0;
       for (std::size_t d = 0; d < costs.detections; ++d)
-        sum += track_of[d] < costs.tracks ? costs.cost[d][track_of[d]] : 1e5;
+        sum += track_of[d] < costs.tracks ? costs.cost[d][track_of[d]] : MatchCosts::kUnmatched;
       return sum;
     };
     // Columns beyond the tracks mean "none".

@@ -156,8 +156,8 @@ TEST(Tracker, ModesDoNotFlip) {
   }
 }
 
-// But what the frame says for certain is not overruled: one id, another orientation.
-TEST(Tracker, ACertainFrameTurnsTheTrack) {
+// But what the frames say for certain is not overruled: one id, another orientation.
+TEST(Tracker, CertainFramesTurnTheTrack) {
   TrackWorld world(8);
   Tracker tracker;
   const Pose T = AnyPose(world, 0, 0, 1.5);
@@ -190,7 +190,8 @@ TEST(Tracker, ReportsOnlyWhatTheFrameShows) {
   EXPECT_EQ(tracker.tracks().size(), 1U);
 }
 
-// An object that drives past at half a metre a second and ten frames a second is predicted to a centimetre.
+// An object that drives past at half a metre a second and ten frames a second is predicted well enough to be refined:
+// two centimetres, and the three degrees that refinement pulls in.
 TEST(Tracker, PredictsMotion) {
   TrackWorld world(10);
   Tracker tracker;
@@ -202,7 +203,7 @@ TEST(Tracker, PredictsMotion) {
     if (f > 4) {
       ASSERT_EQ(priors.size(), 1U);
       EXPECT_LT((priors[0].T_camera_model.t - mover.At(t).t).norm(), 0.02);
-      EXPECT_LT(AngleBetween(priors[0].T_camera_model, mover.At(t)), 0.03);
+      EXPECT_LT(AngleBetween(priors[0].T_camera_model, mover.At(t)), 0.05);
     }
     RecognitionResult result = Frame({world.Measure(2, mover.At(t), {})});
     tracker.Update(TrackWorld::Time(t), world.scene, result);
