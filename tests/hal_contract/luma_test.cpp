@@ -196,7 +196,7 @@ TEST(PixelFormatChoice, RefusalsNameFormatOffersAndRemedy) {
   };
   for (const char* const bad : {"MJPEG", "SRGGB10", "R10", "nv12", "NV12 "}) {
     const std::string text = error(bad, offered);
-    EXPECT_NE(text.find("'" + std::string(bad) + "'"), std::string::npos) << text;
+    EXPECT_NE(text.find(std::string("'").append(bad).append("'")), std::string::npos) << text;
     EXPECT_NE(text.find("it offers MJPEG SRGGB10 NV12"), std::string::npos) << text;
     EXPECT_NE(text.find("set pixel_format"), std::string::npos) << text;
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "hal/replay/replay_camera.h"
 #include "test_data.h"
@@ -141,7 +142,7 @@ TEST_F(ReplayTest, MalformedDataIsNamed) {
 }
 
 TEST_F(ReplayTest, ADataSetOfOneCameraIsRefusedWithTheReason) {
-  fs::remove(root_ / "calib.yaml");
+  std::filesystem::remove(root_ / "calib.yaml");
   test::WriteText(root_ / "test/000001/scene_camera.json", "{}");
   ReplayCamera camera(config_);
   EXPECT_EQ(camera.Open(), CameraError::kBadData);
