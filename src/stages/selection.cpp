@@ -35,27 +35,6 @@ Length Measure(const EdgeMap& left, const EdgeSamples& samples, const ClaimMap& 
   return length;
 }
 
-// Share of the samples (of a model at T_camera_model) that lie inside the smaller bounding box of `body` at T_body.
-float ShareInside(const SelectParams& params, const PreparedModel& body, const Pose& T_camera_body,
-                  const Pose& T_camera_model, const EdgeSamples& samples) {
-  Vector3 low = body.corners[0], high = body.corners[0];
-  for (const Vector3& corner : body.corners) {
-    low = low.cwiseMin(corner);
-    high = high.cwiseMax(corner);
-  }
-  const float distance = params.inside_margin_distance * static_cast<float>(T_camera_body.t.norm());
-  const Vector3 margin = params.inside_margin * (high - low) + Vector3::Constant(distance);
-  const Pose T_body_model = T_camera_body.Inverse() * T_camera_model;
-  const Matrix3 R = T_body_model.R.cast<float>();
-  const Vector3 t = T_body_model.t.cast<float>();
-  float inside = 0;
-  for (const EdgeSample& sample : samples) {
-    const Vector3 p = R * sample.point + t;
-    if (((p - low - margin).array() > 0).all() && ((high - margin - p).array() > 0).all()) inside += 1;
-  }
-  return inside / static_cast<float>(std::max<std::size_t>(samples.size(), 1));
-}
-
 }  // namespace
 
 void ClaimEdges(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model, const Pose& pose,
@@ -91,12 +70,6 @@ void SelectDetections(const SelectParams& params, const RectifiedCamera& camera,
     SampleVisibleEdges({}, camera, models[c.model], c.pose.T_camera_model, scratch.front, scratch.samples);
     const Length length = Measure(left, scratch.samples, claims);
     if (length.claimed > params.max_claimed * length.total) continue;
-    const bool in_place = std::any_of(accepted.begin(), accepted.end(), [&](std::uint16_t k) {
-      const Candidate& a = candidates[k];
-      return ShareInside(params, models[a.model], a.pose.T_camera_model, c.pose.T_camera_model, scratch.samples) >
-             params.max_inside;
-    });
-    if (in_place) continue;
     if (!accepted.try_push_back(static_cast<std::uint16_t>(i))) {
       ++dropped;
       continue;

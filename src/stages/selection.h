@@ -12,9 +12,6 @@ namespace wirepose {
 struct SelectParams {
   float min_score = 0.5F;     // lower ones are not reported
   float max_claimed = 0.35F;  // share of a candidate's supported edges that stronger detections may own
-  // Two bodies are not in one place: share of a candidate's visible edges that may run inside of a stronger detection's
-  // bounding box. The box is taken smaller by a share of its sides and of the distance, for poses are not exact.
-  float max_inside = 0.25F, inside_margin = 0.1F, inside_margin_distance = 0.01F;
 };
 
 // A verified pose of one model in the rectified left frame.
@@ -51,9 +48,8 @@ void ClaimEdges(const RectifiedCamera& camera, const EdgeMap& left, const Prepar
                                  const Pose& pose, VerifyScratch& scratch, const ClaimMap& claims);
 
 // Greedy and exclusive: candidates by falling score; each owns the image edges that support it, and one of whose
-// support more than max_claimed belongs to others is dropped, as is one that is in the place of a stronger one.
-// Instances of one model at the same place (modulo symmetry) merge. `accepted` receives indices into `candidates`, best
-// first. O(candidates * samples).
+// support more than max_claimed belongs to others is dropped. Instances of one model at the same place (modulo
+// symmetry) merge. `accepted` receives indices into `candidates`, best first. O(candidates * samples).
 void SelectDetections(const SelectParams& params, const RectifiedCamera& camera, const EdgeMap& left,
                       std::span<const PreparedModel> models, std::span<const Candidate> candidates,
                       VerifyScratch& scratch, ClaimMap& claims, FixedVector<std::uint16_t, kMaxDetections>& accepted,

@@ -69,29 +69,10 @@ TEST_F(SelectionTest, ImageEdgesHaveOneOwner) {
   // claimed.
   SelectParams all;
   all.max_claimed = 0;
-  all.max_inside = 1;
   const std::vector<Candidate> overlapping = {At(0, 0, 0, 1.2, 0.9F), At(1, 0.03, 0, 1.2, 0.8F)};
   EXPECT_EQ(Select(overlapping, all), std::vector{0});
   all.max_claimed = 1;
   EXPECT_EQ(Select(overlapping, all), (std::vector{0, 1}));
-}
-
-// Two bodies are not in one place, however good the edges of both; side by side and one on the other they may be.
-TEST_F(SelectionTest, BodiesHaveTheirPlace) {
-  SelectParams params;
-  params.max_claimed = 1;
-  const Candidate box = At(0, 0, 0, 1.2, 0.9F);
-  EXPECT_EQ(Select({box, At(1, 0.03, 0, 1.2, 0.8F)}, params), std::vector{0});
-  const auto beside = [&](double x, double y, double z) {
-    Candidate book = At(1, 0, 0, 0, 0.8F);
-    book.pose.T_camera_model = box.pose.T_camera_model * Pose{Matrix3d::Identity(), {x, y, z}};
-    return book;
-  };
-  // Half of 300x200x150 and of 240x165x35 mm.
-  EXPECT_EQ(Select({box, beside(0, 0, 0.075 + 0.0175)}, params), (std::vector{0, 1}));
-  EXPECT_EQ(Select({box, beside(0.15 + 0.12, 0, 0)}, params), (std::vector{0, 1}));
-  EXPECT_EQ(Select({box, beside(0.15 + 0.12 - 0.02, 0, 0)}, params), (std::vector{0, 1})) << "poses are not exact";
-  EXPECT_EQ(Select({box, beside(0.1, 0, 0)}, params), std::vector{0});
 }
 
 // An occluded edge's pixels are free for others: what is not supported is not owned.
@@ -99,7 +80,6 @@ TEST_F(SelectionTest, UnsupportedEdgesClaimNothing) {
   map_->directions.fill(0);
   SelectParams strict;
   strict.max_claimed = 0;
-  strict.max_inside = 1;
   EXPECT_EQ(Select({At(0, 0, 0, 1.2, 0.9F), At(1, 0.03, 0, 1.2, 0.8F)}, strict), (std::vector{0, 1}));
 }
 
