@@ -75,6 +75,7 @@ class SimulatedCamera::Worker {
       : config_(config), spec_(spec), video_(std::move(video)), cache_(std::move(cache)) {
     ring_.Allocate(video_.calibration().width, video_.calibration().height);
     loop_.resize(config_.loop_frames);
+    ready_.reserve(kBuffers + 1);
   }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -119,7 +120,7 @@ class SimulatedCamera::Worker {
     if (!changed_.wait_for(lock, timeout, can_answer)) return unexpected(CameraError::kTimeout);
     if (!ready_.empty()) {
       const Event event = ready_.front();
-      ready_.pop_front();
+      ready_.erase(ready_.begin());
       if (!event.captured) {
         changed_.notify_all();  // there is room for another event
         return unexpected(CameraError::kDisconnected);
@@ -304,7 +305,7 @@ class SimulatedCamera::Worker {
   mutable std::mutex mutex_;  // guards all below
   std::condition_variable changed_;
   BufferRing<kBuffers> ring_;
-  std::deque<Event> ready_;  // not yet asked for
+  std::vector<Event> ready_;  // not yet asked for, oldest first; a deque would free blocks on the caller's thread
   std::deque<SimulatedTruth> truths_;
   std::uint32_t leased_ = 0;
   bool is_stopping_ = false;

@@ -1,8 +1,9 @@
 #include "app/health_monitor.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <limits>
-#include <string>
 
 namespace wirepose::app {
 namespace {
@@ -25,11 +26,32 @@ void Accumulate(const RecognitionStatistics& frame, RecognitionStatistics& total
   Accumulate(frame.detections, total.detections);
 }
 
-std::string Join(std::string_view what, std::string_view detail) {
-  std::string text(what);
-  if (!detail.empty()) text.append(": ").append(detail);
-  return text;
-}
+// Both parts on one line, without heap: a camera that is lost shall not cost the vision thread any.
+class Line {
+ public:
+  Line(std::string_view what, std::string_view detail) {
+    const int size = std::snprintf(text_.data(), text_.size(), "%.*s%s%.*s", static_cast<int>(what.size()), what.data(),
+                                   detail.empty() ? "" : ": ", static_cast<int>(detail.size()), detail.data());
+    size_ = std::min(static_cast<std::size_t>(std::max(size, 0)), text_.size() - 1);
+  }
+  operator std::string_view() const { return {text_.data(), size_}; }  // NOLINT(google-explicit-constructor)
+
+ private:
+  std::array<char, 512> text_;  // more than the report keeps
+  std::size_t size_ = 0;
+};
+
+// "frame N".
+class FrameName {
+ public:
+  explicit FrameName(std::uint64_t sequence) {
+    std::snprintf(text_.data(), text_.size(), "frame %llu", static_cast<unsigned long long>(sequence));
+  }
+  operator std::string_view() const { return text_.data(); }  // NOLINT(google-explicit-constructor)
+
+ private:
+  std::array<char, 32> text_;
+};
 
 }  // namespace
 
@@ -56,7 +78,8 @@ void HealthMonitor::FrameArrived(const hal::StereoFrame& frame, std::string_view
       break;
   }
   SetState(HealthState::kBadFrames, hal::Describe(frame.status));
-  SetError(Join("frame " + std::to_string(frame.sequence) + ": " + hal::Describe(frame.status), detail));
+  const Line what(FrameName(frame.sequence), hal::Describe(frame.status));
+  SetError(Line(what, detail));
 }
 
 void HealthMonitor::FrameDone(const RecognitionStatistics& statistics) {
@@ -68,13 +91,13 @@ void HealthMonitor::FrameDone(const RecognitionStatistics& statistics) {
 void HealthMonitor::FrameFailed(std::uint64_t sequence, std::string_view reason) {
   ++report_.frames.failed;
   SetState(HealthState::kBadFrames, reason);
-  SetError(Join("frame " + std::to_string(sequence), reason));
+  SetError(Line(FrameName(sequence), reason));
 }
 
 void HealthMonitor::CameraFailed(hal::CameraError error, std::string_view detail) {
   const bool timeout = error == hal::CameraError::kTimeout;
   SetState(timeout ? HealthState::kNoFrames : HealthState::kCameraLost, hal::Describe(error));
-  SetError(Join(hal::Describe(error), detail));
+  SetError(Line(hal::Describe(error), detail));
 }
 
 void HealthMonitor::Paused() { SetState(HealthState::kPaused, "ok"); }

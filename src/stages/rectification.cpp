@@ -258,7 +258,7 @@ void RectifyDepth(BasicImageView<const std::uint16_t> raw, const RectificationMa
     std::fill(row, row + width, std::uint16_t{0});
     ForEachPixel(map, y, width, [&, first = begin, last = end](int x, std::int32_t u, std::int32_t v) {
       if (x < first || x >= last) return;
-      row[x] = raw(std::min((u + 32768) >> 16, raw.width - 1), std::min((v + 32768) >> 16, raw.height - 1));
+      row[x] = raw(std::min<int>((u + 32768) >> 16, raw.width - 1), std::min<int>((v + 32768) >> 16, raw.height - 1));
     });
   }
 }

@@ -108,8 +108,8 @@ TEST_F(DepthDatasetTest, BadFilesAreNamed) {
   EXPECT_THAT(ErrorWith("131.5", "140"), HasSubstr("image 7: cam_K differs from that of scene 2 image 3"));
   EXPECT_THAT(ErrorWith("131.5", "-1"), HasSubstr("scene_camera.json: image 7: cam_K is not of the form"));
   EXPECT_THAT(ErrorWith("132", "\"wide\""), HasSubstr("cam_K is missing or not a list of 9 numbers"));
-  EXPECT_THAT(ErrorWith("0.25", "0"), HasSubstr("image 3: depth_scale is not above 0"));
-  EXPECT_THAT(ErrorWith("0.25", "\"mm\""), HasSubstr("depth_scale is missing or not a number"));
+  EXPECT_THAT(ErrorWith("_scale\": 0.25", "_scale\": 0"), HasSubstr("image 3: depth_scale is not above 0"));
+  EXPECT_THAT(ErrorWith("_scale\": 0.25", "_scale\": \"mm\""), HasSubstr("depth_scale is missing or not a number"));
   EXPECT_THAT(ErrorWith("}}", "}"), HasSubstr("scene_camera.json"));
   test::WriteText(scene_ / "scene_camera.json", "{}");
   EXPECT_THAT(Error(), HasSubstr("data set is empty"));

@@ -182,7 +182,7 @@ TEST_F(MessagesTest, ModesOfEqualWeightKeepTheirOrder) {
   auto& modes = report.result.detections[3].modes;  // three
   for (PoseMode& mode : modes) mode.weight = 1.0F / 3;
   FillMessage(report, "camera", *detections_);
-  const auto& results = detections_->value.detections._buffer[2].results;
+  const auto& results = detections_->value.detections._buffer[3].results;
   for (std::uint32_t i = 0; i < 3; ++i) {
     EXPECT_EQ(results._buffer[i].pose.pose.position.x, modes[i].T_camera_model.t.x());
   }

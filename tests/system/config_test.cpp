@@ -89,7 +89,7 @@ TEST_F(ConfigTest, TheExampleIsValid) {
 }
 
 TEST_F(ConfigTest, RefusalsNameLineKeyAndRemedy) {
-  EXPECT_EQ(Refusal("a: 1\n"), ":1: a: unknown key; known here: camera, dds, models, search_for");
+  EXPECT_EQ(Refusal("a: 1\n"), ":1: a: unknown key; known here: camera, dds, models, recognizer, search_for");
   EXPECT_EQ(Refusal("dds:\n  domain: 5\n  domian: 6\n"),
             ":3: dds.domian: unknown key; known here: domain, frame_id, loopback, pool_kib, security, stamp, "
             "topics");
