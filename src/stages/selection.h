@@ -10,7 +10,7 @@
 namespace wirepose {
 
 struct SelectParams {
-  float min_score = 0.5F;     // lower ones are not reported
+  float min_score = 0.6F;     // lower ones are not reported: of those below as many are wrong as right
   float max_claimed = 0.35F;  // share of a candidate's supported edges that stronger detections may own
 };
 
