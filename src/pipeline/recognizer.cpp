@@ -269,13 +269,13 @@ void Recognizer::MatchEyes() {
 void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult& result) {
   const PreparedModel& model = models_[m];
   const bool all_pairs = FindCorrespondences(params_.correspondences, camera(), model, lines_, line_sets_, pairs_);
-  Count(pairs_.size(), kMaxCorrespondences, pairs_.dropped(), result.statistics.correspondences);
+  const std::span<const CorrespondingPair> pairs = pairs_.Sorted();
+  Count(pairs.size(), kMaxCorrespondences, pairs_.dropped(), result.statistics.correspondences);
   timer.Done(Stage::kCorrespondences);
 
   const SceneEdges scene = Edges();
-  const auto& pairs = pairs_.Sorted();
   const bool all_poses =
-      MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, {pairs.begin(), pairs.end()}, hypotheses_);
+      MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, pairs, hypotheses_);
   result.budget_hit = result.budget_hit || !all_pairs || !all_poses;
   Count(hypotheses_.size(), kMaxHypotheses, hypotheses_.dropped(), result.statistics.hypotheses);
   const auto& hypotheses = hypotheses_.Sorted();

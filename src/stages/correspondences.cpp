@@ -64,7 +64,7 @@ class Matcher {
     CorrespondingPair best;
     best.rank = pair.quality + params_.cover_gain * (1 + base_cover_) + params_.junction_gain +
                 params_.promotion * static_cast<float>(params_.max_promotions);
-    return out_.WouldKeep(best);
+    return out_.MayKeep(best);
   }
 
   void MatchPair(const PreparedSet& set, const ImageLinePair& pair) {
@@ -138,7 +138,7 @@ class Matcher {
     // With the most that promotion can add it would still be dropped: it only counts for the others.
     CorrespondingPair best = match;
     best.rank += params_.promotion * static_cast<float>(params_.max_promotions);
-    if (!out_.WouldKeep(best) || !matches_.try_push_back(match)) out_.CountDropped(1);
+    if (!out_.MayKeep(best) || !matches_.try_push_back(match)) out_.CountDropped(1);
     collected_ = true;
     EdgeBits& edges = edges_[match.base_flipped];
     edges[match.other_edge / 32] |= 1U << (match.other_edge % 32);

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "base/keep_best.h"
+#include "base/keep_best_of_many.h"
 #include "model/prepared_model.h"
 #include "stages/line_sets.h"
 
@@ -46,7 +46,7 @@ struct BetterPair {
     return p.base_flipped < q.base_flipped;
   }
 };
-using CorrespondingPairs = KeepBest<CorrespondingPair, kMaxCorrespondences, BetterPair>;
+using CorrespondingPairs = KeepBestOfMany<CorrespondingPair, kMaxCorrespondences, BetterPair>;
 
 // Every image pair whose parameter vector agrees with that of a model pair. Lengths are unreliable: a segment may be
 // any part of its edge that is not too short, but it cannot be longer. Symmetric models are searched from one edge of
