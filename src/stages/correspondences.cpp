@@ -10,6 +10,8 @@
 namespace wirepose {
 namespace {
 
+constexpr float kUnlimited = 1e6F;
+
 class Matcher {
  public:
   Matcher(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
@@ -41,8 +43,9 @@ class Matcher {
       if (set.base_edge != assigned_edge_) Promote();
       assigned_edge_ = set.base_edge;
       for (const ImageLinePair& pair : sets_.OfBase(base)) {
-        if (!CanRank(pair) || !budget_.Spend(1)) break;  // nor can the rest: pairs come by falling quality
-        MatchPair(set, pair);
+        const float room = RoomOf(pair);
+        if (room < 0 || !budget_.Spend(1)) break;  // nor can the rest: pairs come by falling quality
+        MatchPair(set, pair, std::sqrt(2 * room));
       }
     }
     Promote();
@@ -59,15 +62,15 @@ class Matcher {
     return length < edge_length * (1 + params_.length_tolerance) + slack && length + slack > min_cover * edge_length;
   }
 
-  // False when even the best match of this pair would be dropped.
-  [[nodiscard]] bool CanRank(const ImageLinePair& pair) const {
-    CorrespondingPair best;
-    best.rank = pair.quality + params_.cover_gain * (1 + base_cover_) + params_.junction_gain +
-                params_.promotion * static_cast<float>(params_.max_promotions);
-    return out_.MayKeep(best);
+  // By how much the best conceivable match of this pair outranks what is dropped: the most that a misfit may cost.
+  [[nodiscard]] float RoomOf(const ImageLinePair& pair) const {
+    const float best = pair.quality + params_.cover_gain * (1 + base_cover_) + params_.junction_gain +
+                       params_.promotion * static_cast<float>(params_.max_promotions);
+    return out_.worst() ? best - out_.worst()->rank : kUnlimited;
   }
 
-  void MatchPair(const PreparedSet& set, const ImageLinePair& pair) {
+  // `sigmas`: no member farther off than this many standard deviations can be kept.
+  void MatchPair(const PreparedSet& set, const ImageLinePair& pair, float sigmas) {
     if (!pair.metric) {
       if (set.kind != LineSetKind::kIntersecting) return;
       for (std::size_t i = set.first; i < set.corner_end; ++i) Emit(set, model_.members[i], pair);
@@ -78,27 +81,35 @@ class Matcher {
     // Most pairs of a scene are too far apart for any member.
     if (pair.farthest_end_m > set.max_farthest_end_m * (1 + params_.length_tolerance) + slack) return;
     // Members whose distance agrees: a few of the rest by binary search, and those at a corner when the lines may meet.
-    const float high = (pair.distance_m + slack) / (1 - params_.length_tolerance);
-    const float low = (pair.distance_m - slack) / (1 + params_.length_tolerance);
-    MatchRange(set, set.first, set.corner_end, low, high, pair);
-    MatchRange(set, set.corner_end, set.end, low, high, pair);
+    float high = (pair.distance_m + slack) / (1 - params_.length_tolerance);
+    float low = (pair.distance_m - slack) / (1 + params_.length_tolerance);
+    const float reach = sigmas * DistanceSigma(pair, high);
+    high = std::min(high, pair.distance_m + reach);
+    low = std::max(low, pair.distance_m - reach);
+    const float max_angle =
+        std::min(params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad, sigmas * AngleSigma(pair));
+    MatchRange(set, set.first, set.corner_end, {low, high, max_angle}, pair);
+    MatchRange(set, set.corner_end, set.end, {low, high, max_angle}, pair);
   }
 
-  void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, float low, float high,
+  struct Limits {
+    float low_m, high_m;  // of the distance
+    float max_angle_rad;  // between the pair's and the member's angle
+  };
+
+  void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, const Limits& limits,
                   const ImageLinePair& pair) {
     const PreparedMember* members = model_.members.data();
-    const PreparedMember* from = std::lower_bound(
-        members + begin, members + end, low, [](const PreparedMember& m, float value) { return m.distance_m < value; });
-    for (const PreparedMember* m = from; m != members + end && m->distance_m <= high && budget_.Spend(1); ++m) {
-      if (MetricAgrees(pair, *m)) Emit(set, *m, pair);
+    const PreparedMember* from =
+        std::lower_bound(members + begin, members + end, limits.low_m,
+                         [](const PreparedMember& m, float value) { return m.distance_m < value; });
+    for (const PreparedMember* m = from; m != members + end && m->distance_m <= limits.high_m && budget_.Spend(1);
+         ++m) {
+      if (std::abs(pair.angle_rad - m->angle_rad) <= limits.max_angle_rad && SizeAgrees(pair, *m)) Emit(set, *m, pair);
     }
   }
 
-  [[nodiscard]] bool MetricAgrees(const ImageLinePair& pair, const PreparedMember& member) const {
-    if (std::abs(pair.angle_rad - member.angle_rad) >
-        params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad) {
-      return false;
-    }
+  [[nodiscard]] bool SizeAgrees(const ImageLinePair& pair, const PreparedMember& member) const {
     const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
     if (pair.farthest_end_m > member.farthest_end_m * (1 + params_.length_tolerance) + slack) return false;
     return Fits(length_[pair.other], slack_[pair.other], member.other_length_m, params_.min_other_cover);
@@ -125,11 +136,15 @@ class Matcher {
     }
   }
 
+  static float AngleSigma(const ImageLinePair& pair) { return 0.02F + pair.angle_sigma_rad; }
+  static float DistanceSigma(const ImageLinePair& pair, float distance_m) {
+    return 0.003F + 0.01F * distance_m + pair.distance_sigma_m;
+  }
+
   // Exponent of the Gaussian of V, and the other line's cover.
   [[nodiscard]] float Agreement(const ImageLinePair& pair, const PreparedMember& member) const {
-    const float angle = (pair.angle_rad - member.angle_rad) / (0.02F + pair.angle_sigma_rad);
-    const float distance =
-        (pair.distance_m - member.distance_m) / (0.003F + 0.01F * member.distance_m + pair.distance_sigma_m);
+    const float angle = (pair.angle_rad - member.angle_rad) / AngleSigma(pair);
+    const float distance = (pair.distance_m - member.distance_m) / DistanceSigma(pair, member.distance_m);
     const float cover = std::min(1.0F, length_[pair.other] / member.other_length_m);
     return params_.cover_gain * cover - 0.5F * (angle * angle + distance * distance);
   }
