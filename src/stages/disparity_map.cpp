@@ -210,27 +210,27 @@ void ComputeDisparityMap(const DisparityMapParams& params, int width, int height
     for (Scratch::Path& path : row) Reset(path);
   }
   scratch.above_lowest.fill(0);
-  DisparityMap& raw = scratch.raw;
-  raw.width = out.width;
-  raw.height = out.height;
   const auto row = [&](int j) {
     return scratch.difference[static_cast<std::size_t>(std::clamp(j, 0, out.height - 1) % 3)].data();
   };
-  for (int j = 0; j < std::min(2, out.height); ++j) ReadDifferences(params, left, right, j, out.width, scratch);
-  for (int j = 0; j < out.height; ++j) {
+  constexpr std::ptrdiff_t kWidth = DisparityMap::kMaxWidth;
+  const int matched = (out.height + kRowStep - 1) / kRowStep;
+  int read = 0;
+  for (int k = 0; k < matched; ++k) {
+    const int j = k * kRowStep;
+    for (; read < std::min(j + 2, out.height); ++read) ReadDifferences(params, left, right, read, out.width, scratch);
     SumNeighbours(row(j - 1), row(j), row(j + 1), out.width, scratch.cost.data());
-    if (j + 2 < out.height) ReadDifferences(params, left, right, j + 2, out.width, scratch);
-    SumPaths({params.small_step, params.large_step}, out.width, static_cast<std::size_t>(j % 2), scratch);
+    SumPaths({params.small_step, params.large_step}, out.width, static_cast<std::size_t>(k % 2), scratch);
     ChooseBest(out.width, scratch);
-    WriteRow(params.max_asymmetry, out.width, scratch,
-             raw.disparity.data() + static_cast<std::ptrdiff_t>(j) * DisparityMap::kMaxWidth);
+    WriteRow(params.max_asymmetry, out.width, scratch, scratch.raw.data() + k * kWidth);
   }
-  constexpr std::ptrdiff_t kStride = DisparityMap::kMaxWidth;
-  for (int j = 0; j < out.height; ++j) {
-    const std::uint16_t* here = raw.disparity.data() + j * kStride;
-    const bool first = j == 0, last = j + 1 == out.height;
-    DropSpeckles(first ? here : here - kStride, here, last ? here : here + kStride, first ? 0 : 1, last ? 0 : 1,
-                 out.width, out.disparity.data() + j * kStride);
+  for (int k = 0; k < matched; ++k) {
+    const std::uint16_t* here = scratch.raw.data() + k * kWidth;
+    const bool first = k == 0, last = k + 1 == matched;
+    std::uint16_t* to = out.disparity.data() + k * kRowStep * kWidth;
+    DropSpeckles(first ? here : here - kWidth, here, last ? here : here + kWidth, first ? 0 : 1, last ? 0 : 1,
+                 out.width, to);
+    for (int j = 1; j < kRowStep && k * kRowStep + j < out.height; ++j) std::copy_n(to, out.width, to + j * kWidth);
   }
 }
 

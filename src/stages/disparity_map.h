@@ -36,6 +36,8 @@ struct DisparityMapParams {
 };
 
 inline constexpr int kMapDisparities = 80;  // half pixels: surfaces from 0.4 m at f*B = 63 px*m
+// Every second row of the map is matched and stands for the next one too: half the time, the same recognition.
+inline constexpr int kRowStep = 2;
 
 // Work space; contents have no meaning between calls.
 struct DisparityScratch {
@@ -50,7 +52,8 @@ struct DisparityScratch {
   std::array<std::uint16_t, kWidth> above_lowest;
   std::array<std::array<std::uint16_t, kWidth>, 2> best_right;  // lowest cost and its disparity in the right image
   std::array<std::uint16_t, kWidth> best_left;
-  DisparityMap raw;  // before speckles are dropped
+  std::array<std::uint16_t, std::size_t{kWidth} * ((DisparityMap::kMaxHeight + kRowStep - 1) / kRowStep)>
+      raw;  // before speckles are dropped
 };
 
 // Semi-global matching (Hirschmueller 2008) at half resolution on locally normalised images, along three paths (from
