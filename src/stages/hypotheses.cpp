@@ -66,6 +66,8 @@ class HypothesisMaker {
   }
 
  private:
+  // In the frames (d1, e2, e3) of the image and (m1, m2, m3) of the model, whose second axis lies in the plane of base
+  // and other direction, everything but the last angle is known: poses that do not fit cost no rotation.
   void MakeFromAngle(float c, const ImageLinePair& pair, const CorrespondingPair& match) {
     const Vector3 n = PlaneNormal(scene_.camera, other_->segment);
     const float nd = n.dot(d1_);
@@ -80,19 +82,52 @@ class HypothesisMaker {
     const float sine = std::sqrt(1 - clamped * clamped);
     const Vector3 u = (n - nd * d1_) / k;
     const Vector3 v = d1_.cross(u);
-    for (float sign : {1.0F, -1.0F}) {
-      const Vector3 d2 = c * d1_ + s * (clamped * u + sign * sine * v);
-      if (pair.metric && std::abs(d2.dot(other_->Direction())) < MinCosine(pair)) continue;
-      hypothesis_.R = RotationOf(m1_, other_edge_->direction, d1_, d2);
-      const Vector3 t0 = 0.5F * (base_->a + base_->b) - hypothesis_.R * (0.5F * (base_edge_->a + base_edge_->b));
+    SetModelFrame((other_edge_->direction - c * m1_) / s);
+    const Vector3 middle = 0.5F * (base_->a + base_->b);
+    const float offset = n.dot(middle) + nd * other_a_.x() + k * clamped * other_a_.y();
+    for (const float sign : {sine, -sine}) {
+      const Vector3 e2 = clamped * u + sign * v;
+      if (pair.metric && std::abs((c * d1_ + s * e2).dot(other_->Direction())) < MinCosine(pair)) continue;
       if (std::abs(nd) > 0.1F) {
-        const float along = -n.dot(hypothesis_.R * other_edge_->a + t0) / nd;
-        hypothesis_.t = t0 + along * d1_;
-        Score();
+        ScoreInFrame(middle, (k * sign * other_a_.z() - offset) / nd, e2);
       } else if (match.junction != 0) {
-        AlignEnd(t0, pair.base_end, match.base_flipped != 0);
+        ScoreInFrame(middle, AlongOfCorner(middle, pair.base_end, match.base_flipped != 0), e2);
       }
     }
+  }
+
+  // The model's frame, with the base edge's middle as its origin and `m2` across the edge.
+  void SetModelFrame(const Vector3& m2) {
+    M_.col(0) = m1_;
+    M_.col(1) = m2;
+    M_.col(2) = m1_.cross(m2);
+    model_middle_ = 0.5F * (base_edge_->a + base_edge_->b);
+    other_a_ = M_.transpose() * (other_edge_->a - model_middle_);
+    other_b_ = M_.transpose() * (other_edge_->b - model_middle_);
+  }
+
+  // Where the base edge's middle must lie along the base line, for its corner to be at the line's end `end`.
+  [[nodiscard]] float AlongOfCorner(const Vector3& middle, LineEnd end, bool flipped) const {
+    const Vector3& image = end == LineEnd::kA ? base_->a : base_->b;
+    const bool model_a = (end == LineEnd::kA) != flipped;
+    const float half = 0.5F * base_edge_->length_m;
+    // m1 runs from the edge's a to its b unless it is flipped.
+    return (image - middle).dot(d1_) - (model_a != flipped ? -half : half);
+  }
+
+  // The model's frame put to (d1, e2, d1 x e2), its origin `along` the base line from its middle.
+  void ScoreInFrame(const Vector3& middle, float along, const Vector3& e2) {
+    const Vector3 origin = middle + along * d1_;
+    const Vector3 half = 0.5F * base_edge_->length_m * d1_;
+    if (!Covers(origin - half, origin + half, base_->segment)) return;
+    Matrix3 D;
+    D.col(0) = d1_;
+    D.col(1) = e2;
+    D.col(2) = d1_.cross(e2);
+    if (!Covers(origin + D * other_a_, origin + D * other_b_, other_->segment)) return;
+    hypothesis_.R = D * M_.transpose();
+    hypothesis_.t = origin - hypothesis_.R * model_middle_;
+    ScoreCovered();
   }
 
   // From a junction whose other segment shows its edge in full length: the far end lies on the ray of the segment's far
@@ -121,15 +156,6 @@ class HypothesisMaker {
       hypothesis_.t = t0 + (corner - hypothesis_.R * model_corner - t0).dot(d1_) * d1_;
       Score();
     }
-  }
-
-  // Puts the model corner at the base line's end `end`.
-  void AlignEnd(const Vector3& t0, LineEnd end, bool flipped) {
-    const Vector3 image = end == LineEnd::kA ? base_->a : base_->b;
-    const bool model_a = (end == LineEnd::kA) != flipped;
-    const Vector3 corner = hypothesis_.R * (model_a ? base_edge_->a : base_edge_->b) + t0;
-    hypothesis_.t = t0 + (image - corner).dot(d1_) * d1_;
-    Score();
   }
 
   [[nodiscard]] float MinCosine(const ImageLinePair& pair) const {
@@ -166,26 +192,37 @@ class HypothesisMaker {
     }
   }
 
-  // The segment lies on the projected edge and within its ends.
-  [[nodiscard]] bool Covers(const PreparedEdge& edge, const Segment2& segment) const {
-    PoseScorer::Projected p;
-    if (!scorer_.Project(edge, hypothesis_.R, hypothesis_.t, p)) return false;
-    const float length = (p.b - p.a).norm();
+  // The segment lies on the projected edge and within its ends. `a`, `b`: the edge's ends in the camera frame.
+  [[nodiscard]] bool Covers(const Vector3& a, const Vector3& b, const Segment2& segment) const {
+    if (a.z() < 0.05F || b.z() < 0.05F) return false;
+    const float fa = f_ / a.z(), fb = f_ / b.z();
+    const Vector2 origin(fa * a.x() + cx_, fa * a.y() + cy_);
+    const Vector2 delta = Vector2(fb * b.x() + cx_, fb * b.y() + cy_) - origin;
+    const float length = delta.norm();
     if (length < 3) return false;
-    const Vector2 d = (p.b - p.a) / length;
+    const Vector2 d = delta / length;
     const float slack = params_.end_tolerance_px + params_.end_tolerance_share * length;
     for (const Vector2& q : {segment.a, segment.b}) {
-      const float along = (q - p.a).dot(d);
-      const float across = std::abs((q - p.a).x() * d.y() - (q - p.a).y() * d.x());
+      const Vector2 p = q - origin;
+      const float along = p.dot(d);
+      const float across = std::abs(p.x() * d.y() - p.y() * d.x());
       if (along < -slack || along > length + slack || across > params_.end_tolerance_px) return false;
     }
     return true;
   }
 
+  [[nodiscard]] bool Covers(const PreparedEdge& edge, const Segment2& segment) const {
+    return Covers(hypothesis_.R * edge.a + hypothesis_.t, hypothesis_.R * edge.b + hypothesis_.t, segment);
+  }
+
   void Score() {
+    if (Covers(*base_edge_, base_->segment) && Covers(*other_edge_, other_->segment)) ScoreCovered();
+  }
+
+  // Of a pose at which both edges cover their segments.
+  void ScoreCovered() {
     const Vector3 centre = hypothesis_.R * model_.centre + hypothesis_.t;
     if (centre.z() < params_.min_depth_m) return;
-    if (!Covers(*base_edge_, base_->segment) || !Covers(*other_edge_, other_->segment)) return;
     const EdgeBits& visible = model_.EdgesSeenFrom(-(hypothesis_.R.transpose() * hypothesis_.t));
     if (!HasEdge(visible, hypothesis_.base_edge) || !HasEdge(visible, hypothesis_.other_edge)) return;
     if (!budget_.Spend(1)) return;
@@ -205,6 +242,9 @@ class HypothesisMaker {
   const PreparedEdge* base_edge_ = nullptr;
   const PreparedEdge* other_edge_ = nullptr;
   Vector3 d1_, m1_;
+  // Of MakeFromAngle: axes of the model's frame, its origin, and the other edge's ends in it.
+  Matrix3 M_;
+  Vector3 model_middle_, other_a_, other_b_;
   Hypothesis hypothesis_;
   WorkBudget budget_;
 };
