@@ -35,23 +35,31 @@ class Matcher {
   void MatchBase(std::size_t base) {
     const float length = length_[base];
     const float slack = slack_[base];
-    for (const PreparedSet& set : model_.sets) {
-      const PreparedEdge& edge = model_.edges[set.base_edge];
+    const std::span<const ImageLinePair> pairs = sets_.OfBase(base);
+    // Both sets of one base edge follow each other; they are combined, since they share it (paper: "combined if they
+    // share a line").
+    for (std::size_t first = 0, next = 0; first < model_.sets.size(); first = next) {
+      const std::uint16_t e = model_.sets[first].base_edge;
+      while (next < model_.sets.size() && model_.sets[next].base_edge == e) ++next;
+      const PreparedEdge& edge = model_.edges[e];
       if (!Fits(length, slack, edge.length_m, params_.min_cover)) continue;
       base_cover_ = std::min(1.0F, length / edge.length_m);
-      // Both sets of one base edge are combined, since they share it (paper: "combined if they share a line").
-      if (set.base_edge != assigned_edge_) Promote();
-      assigned_edge_ = set.base_edge;
-      for (const ImageLinePair& pair : sets_.OfBase(base)) {
-        const float room = RoomOf(pair);
-        if (room < 0 || !budget_.Spend(1)) break;  // nor can the rest: pairs come by falling quality
-        MatchPair(set, pair, std::sqrt(2 * room));
-      }
+      MatchPairs({model_.sets.begin() + first, model_.sets.begin() + next}, pairs);
+      Promote();
     }
-    Promote();
   }
 
  private:
+  void MatchPairs(std::span<const PreparedSet> sets, std::span<const ImageLinePair> pairs) {
+    for (const ImageLinePair& pair : pairs) {
+      const float room = RoomOf(pair);
+      if (room < 0 || !budget_.Spend(1)) break;  // nor can the rest: pairs come by falling quality
+      for (const PreparedSet& set : sets) {
+        if (pair.kind == set.kind) MatchPair(set, pair, std::sqrt(2 * room));
+      }
+    }
+  }
+
   // What the length of a line may be wrong by: its ends by a pixel or two, its depth by its sigma.
   [[nodiscard]] float SlackOf(const Line3& line) const {
     const float metres_per_px = 0.5F * (line.a.z() + line.b.z()) / static_cast<float>(camera_.f);
@@ -72,11 +80,9 @@ class Matcher {
   // `sigmas`: no member farther off than this many standard deviations can be kept.
   void MatchPair(const PreparedSet& set, const ImageLinePair& pair, float sigmas) {
     if (!pair.metric) {
-      if (set.kind != LineSetKind::kIntersecting) return;
       for (std::size_t i = set.first; i < set.corner_end; ++i) Emit(set, model_.members[i], pair);
       return;
     }
-    if (pair.kind != set.kind) return;
     const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
     // Most pairs of a scene are too far apart for any member.
     if (pair.farthest_end_m > set.max_farthest_end_m * (1 + params_.length_tolerance) + slack) return;
@@ -100,6 +106,7 @@ class Matcher {
   void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, const Limits& limits,
                   const ImageLinePair& pair) {
     const PreparedMember* members = model_.members.data();
+    if (begin == end || members[end - 1].distance_m < limits.low_m) return;
     const PreparedMember* from =
         std::lower_bound(members + begin, members + end, limits.low_m,
                          [](const PreparedMember& m, float value) { return m.distance_m < value; });
@@ -130,7 +137,7 @@ class Matcher {
       return;
     }
     if (!pair.metric) return;
-    for (std::uint8_t flipped : {0, 1}) {
+    for (const std::uint8_t flipped : {0, 1}) {
       match.base_flipped = flipped;
       Collect(match);
     }
@@ -151,10 +158,8 @@ class Matcher {
 
   void Collect(const CorrespondingPair& match) {
     // With the most that promotion can add it would still be dropped: it only counts for the others.
-    CorrespondingPair best = match;
-    best.rank += params_.promotion * static_cast<float>(params_.max_promotions);
-    if (!out_.MayKeep(best) || !matches_.try_push_back(match)) out_.CountDropped(1);
-    collected_ = true;
+    const float best = match.rank + params_.promotion * static_cast<float>(params_.max_promotions);
+    if ((out_.worst() && best < out_.worst()->rank) || !matches_.try_push_back(match)) out_.CountDropped(1);
     EdgeBits& edges = edges_[match.base_flipped];
     edges[match.other_edge / 32] |= 1U << (match.other_edge % 32);
   }
@@ -162,8 +167,6 @@ class Matcher {
   // Corresponding sets that share the base line and its edge are promoted: each ranks by the number of model edges
   // that found an image line under this assignment.
   void Promote() {
-    if (!collected_) return;
-    collected_ = false;
     float promotion[2];
     for (std::size_t flip = 0; flip < 2; ++flip) {
       int count = 0;
@@ -187,9 +190,7 @@ class Matcher {
   std::array<float, kMaxSegments> length_{}, slack_{};  // of lines with depth, m
   // Of the base line and base edge at hand.
   float base_cover_ = 0;
-  std::uint16_t assigned_edge_ = kNoFace;
   FixedVector<CorrespondingPair, 2048> matches_;
-  bool collected_ = false;  // anything since the last promotion
   EdgeBits edges_[2] = {};
   WorkBudget budget_;
 };

@@ -33,7 +33,7 @@ class PoseScorer {
   // An edge in the rectified pair: end points in the left image and their disparities.
   struct Projected {
     Vector2 a, b;
-    float disparity_a = 0, disparity_b = 0;
+    float disparity_a, disparity_b;
   };
   // False when the edge comes too near to the camera plane (5 cm).
   bool Project(const PreparedEdge& edge, const Matrix3& R, const Vector3& t, Projected& out) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "base/simd.h"
 
@@ -11,6 +12,10 @@ namespace {
 
 // Poses that are promoted; the rest of the hypotheses is too weak to matter.
 constexpr std::size_t kMaxPromoted = 2 * kMaxCandidates;
+
+// Lines looked at in one go: where none of them is marked, as almost everywhere, all are passed over.
+constexpr std::size_t kBlock = 8;
+static_assert(kMaxSegments % kBlock == 0);
 
 // The lines' image ends, number by number.
 struct SegmentEnds {
@@ -100,8 +105,10 @@ class Promoter {
     const Vector2 u = d / length;
     const Line3* best = nullptr;
     float best_overlap = 4;
-    MarkNear(ends_, lines_.size(), p.a, u, max_offset, near_.data());
-    for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const std::size_t count = lines_.size();
+    MarkNear(ends_, count, p.a, u, max_offset, near_.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      while (i % kBlock == 0 && i + kBlock < count && NoneNear(i)) i += kBlock;
       if (near_[i] == 0) continue;
       const Line3& line = lines_[i];
       const Segment2& s = line.segment;
@@ -119,8 +126,15 @@ class Promoter {
     }
     if (best == nullptr) return false;
     const Found found{{best->id, static_cast<std::uint16_t>(e)}, best->segment.Length()};
-    if (!found_.try_push_back(found)) return true;
+    found_.push_back(found);  // at most one an edge
     return true;
+  }
+
+  [[nodiscard]] bool NoneNear(std::size_t block) const {
+    std::uint64_t marks;
+    static_assert(sizeof(marks) == kBlock);
+    std::memcpy(&marks, near_.data() + block, kBlock);
+    return marks == 0;
   }
 
   // The line's disparity at its middle is within five sigma (and 4 px) of the edge's there.
