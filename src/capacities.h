@@ -26,8 +26,9 @@ inline constexpr std::size_t kMaxChain = 2048;
 // Corners whose rows are compared between the eyes: one in each of 8 x 4 cells. Five numbers are estimated from them.
 inline constexpr std::size_t kMaxRowOffsets = 32;
 
-// Related pairs of image lines: 150 lines with depth make 11,000 pairs; only clutter of small tiles has more.
-inline constexpr std::size_t kMaxImageLinePairs = 6144;
+// Related pairs of image lines, by what they tell: 150 lines with depth make 11,000, but twice as many as this find no
+// more objects.
+inline constexpr std::size_t kMaxImageLinePairs = 3072;
 // Corresponding line sets kept per model, by rank: the paper's "small number".
 inline constexpr std::size_t kMaxCorrespondences = 4096;
 inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose

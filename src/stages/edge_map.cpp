@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 namespace wirepose {
 namespace {
@@ -17,36 +16,37 @@ std::uint16_t DirectionAndNeighbours(int direction) {
 }  // namespace
 
 void BuildEdgeMap(const EdgeImage& edges, EdgeMap& out) {
+  constexpr int kScale = EdgeMap::kScale, kRadius = EdgeMap::kRadius, kStride = EdgeMap::kStride;
+  static_assert(kScale == 2 && kRadius == 2, "the cells within the radius are written out");
   out.width = edges.width;
   out.height = edges.height;
   out.threshold = static_cast<float>(edges.threshold);
-  std::fill(out.directions.begin(),
-            out.directions.begin() + static_cast<std::ptrdiff_t>(EdgeImage::Index(0, edges.height)), std::uint16_t{0});
-  // A disc of radius 2 around each ridge pixel: rows of 5 pixels, the outer ones of 4. Ridges keep 3 pixels from the
-  // border.
+  const int columns = (edges.width + 1) / kScale, rows = (edges.height + 1) / kScale;
+  std::fill(out.directions.begin(), out.directions.begin() + static_cast<std::ptrdiff_t>(rows) * kStride,
+            std::uint16_t{0});
+  // Ridges keep 3 pixels from the border.
   for (std::uint32_t k = 0; k < edges.ridge_count; ++k) {
-    const std::uint32_t i = edges.ridge_pixels[k];
+    const std::uint32_t pixel = edges.ridge_pixels[k];
+    const int x = static_cast<int>(pixel % kMaxImageWidth), y = static_cast<int>(pixel / kMaxImageWidth);
     // The edge runs across its gradient.
-    const std::uint16_t bits =
-        DirectionAndNeighbours(EdgeMap::Direction(static_cast<float>(-edges.gy[i]), static_cast<float>(edges.gx[i])));
-    // Four pixels at a time: the pattern is the same in each 16 bit lane, so byte order does not matter.
-    const std::uint64_t four = bits * 0x0001000100010001ULL;
-    std::uint16_t* centre = out.directions.data() + i;
-    for (int dy = -EdgeMap::kRadius; dy <= EdgeMap::kRadius; ++dy) {
-      std::uint16_t* row = centre + dy * kMaxImageWidth;
-      const bool outer = dy == -EdgeMap::kRadius || dy == EdgeMap::kRadius;
-      const int from = outer ? -1 : -EdgeMap::kRadius;
-      std::uint64_t lanes;
-      std::memcpy(&lanes, row + from, sizeof(lanes));
-      lanes |= four;
-      std::memcpy(row + from, &lanes, sizeof(lanes));
-      if (!outer) row[EdgeMap::kRadius] = static_cast<std::uint16_t>(row[EdgeMap::kRadius] | bits);
+    const std::uint16_t bits = DirectionAndNeighbours(
+        EdgeMap::Direction(static_cast<float>(-edges.gy[pixel]), static_cast<float>(edges.gx[pixel])));
+    std::uint16_t* cell = out.directions.data() + (y / kScale) * kStride + x / kScale;
+    // From an even place the cells before, at and after it are near, from an odd one those on both sides; of nine the
+    // corners are too far.
+    const bool odd_x = x % kScale != 0, odd_y = y % kScale != 0;
+    for (int dj = odd_y ? 0 : -1; dj <= 1; ++dj) {
+      for (int di = odd_x ? 0 : -1; di <= 1; ++di) {
+        if (!odd_x && !odd_y && di != 0 && dj != 0) continue;
+        std::uint16_t& near = cell[dj * kStride + di];
+        near = static_cast<std::uint16_t>(near | bits);
+      }
     }
   }
   std::uint32_t set = 0, count = 0;
-  for (int y = 4; y < edges.height - 4; y += 3) {
-    for (int x = 4; x < edges.width - 4; x += 3) {
-      set += static_cast<std::uint32_t>(std::popcount(out.directions[EdgeImage::Index(x, y)]));
+  for (int j = 2; j < rows - 2; j += 2) {
+    for (int i = 2; i < columns - 2; i += 2) {
+      set += static_cast<std::uint32_t>(std::popcount(out.directions[static_cast<std::size_t>(j * kStride + i)]));
       count += EdgeMap::kDirections;
     }
   }

@@ -10,13 +10,16 @@
 
 namespace wirepose {
 
-// Bit k of a pixel is set when a ridge pixel within kRadius runs in direction k (modulo half a turn) or next to it.
+// Bit k of a cell is set when a ridge pixel within kRadius of its middle runs in direction k (modulo half a turn) or
+// next to it. Cells are two pixels wide: the map stays in the cache that thousands of poses a frame look it up from.
 struct EdgeMap {
   static constexpr int kDirections = 16;
   static constexpr int kRadius = 2;
+  static constexpr int kScale = 2;  // pixels a cell; the middle of cell (i, j) is pixel (2 i, 2 j)
+  static constexpr int kStride = kMaxImageWidth / kScale;
 
-  int width = 0, height = 0;
-  std::array<std::uint16_t, kMaxPixels> directions;
+  int width = 0, height = 0;  // of the image
+  std::array<std::uint16_t, std::size_t{kStride} * (kMaxImageHeight / kScale)> directions;
   float threshold = 0;   // gradient from which on a pixel may be an edge in this image, kGradientOne
   float background = 0;  // share of (pixel, direction) pairs that are set: the rate at which a random edge is supported
 
@@ -39,15 +42,16 @@ struct EdgeMap {
   }
   // Requires Contains(x, y).
   [[nodiscard]] bool HasEdge(float x, float y, int direction) const {
-    return HasEdgeAt(static_cast<int>(x + 0.5F), static_cast<int>(y + 0.5F), direction);
+    constexpr float kCells = 1.0F / kScale;
+    return HasEdgeAt(static_cast<int>(x * kCells + 0.5F), static_cast<int>(y * kCells + 0.5F), direction);
   }
-  // Of the pixel itself; it lies in the map.
-  [[nodiscard]] bool HasEdgeAt(int x, int y, int direction) const {
-    return ((directions[EdgeImage::Index(x, y)] >> direction) & 1U) != 0;
+  // Of a cell that lies in the map.
+  [[nodiscard]] bool HasEdgeAt(int i, int j, int direction) const {
+    return ((directions[static_cast<std::size_t>(j * kStride + i)] >> direction) & 1U) != 0;
   }
 };
 
-// O(pixels + ridge pixels * 21).
+// O(pixels / 4 + ridge pixels * 6).
 void BuildEdgeMap(const EdgeImage& edges, EdgeMap& out);
 
 }  // namespace wirepose

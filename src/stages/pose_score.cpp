@@ -75,10 +75,10 @@ void PoseScorer::AddSupport(const EdgeMap& map, const LogGain& gain, const Vecto
   const float step = 1 / static_cast<float>(n);
   int inside = n, hits = 0;
   if (map.Contains(a.x(), a.y()) && map.Contains(b.x(), b.y())) {
-    // Fixed point, rounded to the pixel: no test and no conversion a sample.
-    constexpr float kOne = 65536;
+    // Fixed point, rounded to the cell: no test and no conversion a sample.
+    constexpr float kOne = 65536.0F / EdgeMap::kScale, kHalf = 32768;
     const auto dx = static_cast<int>(d.x() * step * kOne), dy = static_cast<int>(d.y() * step * kOne);
-    int x = static_cast<int>((a.x() + 0.5F) * kOne) + dx / 2, y = static_cast<int>((a.y() + 0.5F) * kOne) + dy / 2;
+    int x = static_cast<int>(a.x() * kOne + kHalf) + dx / 2, y = static_cast<int>(a.y() * kOne + kHalf) + dy / 2;
     for (int k = 0; k < n; ++k, x += dx, y += dy) hits += map.HasEdgeAt(x >> 16, y >> 16, direction) ? 1 : 0;
   } else {
     inside = 0;

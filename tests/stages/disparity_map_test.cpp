@@ -40,10 +40,11 @@ class Twin {
     Choose();
   }
 
-  [[nodiscard]] int At(int x, int y) const {
+  [[nodiscard]] int At(int x, int row) const {
+    const int y = row / kRowStep * kRowStep;  // the row that was matched for this one
     const int here = raw_[Index(x, y)];
     int confirmed = 0;
-    for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -1}, {0, 1}}) {
+    for (const auto& [dx, dy] : {std::pair(-1, 0), {1, 0}, {0, -kRowStep}, {0, kRowStep}}) {
       if (x + dx < 0 || y + dy < 0 || x + dx >= w_ || y + dy >= h_) continue;
       if (std::abs(raw_[Index(x + dx, y + dy)] - here) <= 16) ++confirmed;
     }
@@ -99,7 +100,7 @@ class Twin {
     }
     for (int x = 0; x < w_; ++x) {
       Path path;
-      for (int y = 0; y < h_; ++y) Add(path = Next(path, x, y), x, y);
+      for (int y = 0; y < h_; y += kRowStep) Add(path = Next(path, x, y), x, y);
     }
   }
   void Choose() {

@@ -23,9 +23,8 @@ struct Matching {
 void Match(const PreparedModel& model, const IdealScene& scene, Matching& out) {
   FindLineSets({}, scene.camera, scene.lines, out.sets);
   FindCorrespondences({}, scene.camera, model, scene.lines, out.sets, out.pairs);
-  const auto& sorted = out.pairs.Sorted();
-  MakeHypotheses({}, {scene.camera, scene.left, scene.right}, model, scene.lines, out.sets,
-                 {sorted.begin(), sorted.end()}, out.hypotheses);
+  MakeHypotheses({}, {scene.camera, scene.left, scene.right}, model, scene.lines, out.sets, out.pairs.Sorted(),
+                 out.hypotheses);
 }
 
 Pose PoseOf(const Hypothesis& h) { return {h.R.cast<double>(), h.t.cast<double>()}; }
@@ -113,7 +112,7 @@ TEST(CorrespondenceFinding, SymmetricDuplicatesAreNotSearchedTwice) {
   const auto matching = std::make_unique<Matching>();
   const auto scene = testing::MakeScene(random, *model, testing::AnyView(random, *model, testing::TestCamera(), 300));
   Match(*model, *scene, *matching);
-  ASSERT_GT(matching->pairs.size(), 0U);
+  ASSERT_GT(matching->pairs.items().size(), 0U);
   for (const CorrespondingPair& c : matching->pairs.items()) EXPECT_TRUE(model->edges[c.base_edge].representative);
   for (const Hypothesis& h : matching->hypotheses.items()) EXPECT_TRUE(model->edges[h.base_edge].representative);
 }
@@ -133,7 +132,7 @@ TEST(CorrespondenceFinding, TooLongLinesMatchNothing) {
     EXPECT_LT(scene->lines[pair.base].Length(), 1.5F * book->edges[c.base_edge].length_m);
   }
   Match(*refrigerator, *scene, *matching);
-  EXPECT_GT(matching->pairs.size(), 100U);
+  EXPECT_GT(matching->pairs.items().size(), 100U);
 }
 
 TEST(HypothesisMaking, NothingFromNothing) {
@@ -141,7 +140,7 @@ TEST(HypothesisMaking, NothingFromNothing) {
   const auto scene = std::make_unique<IdealScene>();
   const auto matching = std::make_unique<Matching>();
   Match(*model, *scene, *matching);
-  EXPECT_EQ(matching->pairs.size(), 0U);
+  EXPECT_EQ(matching->pairs.items().size(), 0U);
   EXPECT_EQ(matching->hypotheses.size(), 0U);
 }
 
