@@ -6,7 +6,8 @@
 
 namespace wirepose {
 
-// All of `out` but `overrun`, from the model's visible edges at the pose, edge by edge. O(samples * profile length).
+// All of `out` but `overrun` and `crossed`, from the model's visible edges at the pose, edge by edge. O(samples *
+// profile length).
 void GatherEdgeEvidence(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model,
                         const Pose& T_camera_model, const EdgeSamples& samples, EdgeEvidence& out);
 

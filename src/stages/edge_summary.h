@@ -9,8 +9,8 @@
 
 namespace wirepose {
 
-// All of `out` but `overrun`. `sums`: of each model edge, by its index; zero where it has no samples. `total_px`: image
-// length of the visible edges, also of what lies outside of the image. O(edges).
+// All of `out` but `overrun` and `crossed`. `sums`: of each model edge, by its index; zero where it has no samples.
+// `total_px`: image length of the visible edges, also of what lies outside of the image. O(edges).
 void SummarizeEdges(const VerifyParams& params, const PreparedModel& model, const Pose& T_camera_model,
                     std::span<const EdgeSums> sums, float total_px, EdgeEvidence& out);
 

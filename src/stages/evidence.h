@@ -48,6 +48,7 @@ struct EdgeEvidence {
   float corners = 0;           // share of corners all of whose edges have such ends
   float weakest_face = 0;      // lowest support of the edges around a visible face
   float overrun = 0;           // share of edge ends beyond which the image edge goes on: clutter has no corners there
+  float crossed = 0;           // share of edges that such edges cross at both ends: a face of something larger
 };
 
 // All that is known of a pose before it is scored.
@@ -60,7 +61,7 @@ struct Evidence {
   float uncertainty = 0;    // of the position by what the visible edges determine, over the diameter
 };
 
-inline constexpr std::size_t kEvidenceTerms = 31;
+inline constexpr std::size_t kEvidenceTerms = 32;
 using EvidenceTerms = std::array<float, kEvidenceTerms>;
 
 // The terms in a fixed order, as the score reads them, and their names in that order.

@@ -23,10 +23,16 @@ EndSeen LookBeyond(const EdgeMap& map, const Vector2& end, const Vector2& direct
   return hits >= 2 ? EndSeen::kGoesOn : EndSeen::kEnds;
 }
 
+// What the image shows beyond both ends of an edge.
+struct EdgeEnds {
+  std::uint16_t edge = 0;
+  std::array<EndSeen, 2> end{};
+};
+
 }  // namespace
 
-float OverrunShare(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model,
-                   const Pose& T_camera_model, const EdgeSamples& samples) {
+Overrun MeasureOverrun(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model,
+                       const Pose& T_camera_model, const EdgeSamples& samples) {
   const Matrix3 R = T_camera_model.R.cast<float>();
   const Vector3 t = T_camera_model.t.cast<float>();
   const auto f = static_cast<float>(camera.f);
@@ -37,6 +43,8 @@ float OverrunShare(const RectifiedCamera& camera, const EdgeMap& left, const Pre
   };
   std::array<bool, kMaxModelEdges> seen{};
   for (const EdgeSample& s : samples) seen[s.edge] = true;
+  FixedVector<EdgeEnds, kMaxModelEdges> edges;
+  std::array<std::uint8_t, kMaxModelVertices> goes_on{};  // edges that go on beyond each vertex
   int ends = 0, overrun = 0;
   for (std::size_t e = 0; e < model.edges.size(); ++e) {
     if (!seen[e]) continue;
@@ -44,13 +52,23 @@ float OverrunShare(const RectifiedCamera& camera, const EdgeMap& left, const Pre
     const float length = (b - a).norm();
     if (length < kMinLengthPx) continue;
     const Vector2 direction = (b - a) / length;
-    for (const EndSeen end : {LookBeyond(left, a, -direction), LookBeyond(left, b, direction)}) {
-      if (end == EndSeen::kOutside) continue;
+    edges.push_back({static_cast<std::uint16_t>(e), {LookBeyond(left, a, -direction), LookBeyond(left, b, direction)}});
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (edges.back().end[k] == EndSeen::kOutside) continue;
       ++ends;
-      overrun += end == EndSeen::kGoesOn ? 1 : 0;
+      if (edges.back().end[k] != EndSeen::kGoesOn) continue;
+      ++overrun;
+      ++goes_on[model.view.edges[e].vertex[k]];
     }
   }
-  return static_cast<float>(overrun) / static_cast<float>(std::max(ends, 4));
+  int crossed = 0;
+  for (const EdgeEnds& edge : edges) {
+    const auto& vertex = model.view.edges[edge.edge].vertex;
+    const auto others = [&](std::size_t k) { return goes_on[vertex[k]] - (edge.end[k] == EndSeen::kGoesOn ? 1 : 0); };
+    crossed += others(0) > 0 && others(1) > 0 ? 1 : 0;
+  }
+  return {static_cast<float>(overrun) / static_cast<float>(std::max(ends, 4)),
+          static_cast<float>(crossed) / static_cast<float>(std::max<std::size_t>(edges.size(), 4))};
 }
 
 }  // namespace wirepose

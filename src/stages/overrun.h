@@ -9,11 +9,17 @@
 
 namespace wirepose {
 
-// Share of the ends of long visible edges beyond which the left image shows an edge of the same direction, 0..1. An
-// object's edges end at its corners; lines of clutter that happen to lie right seldom do. `samples` tells which edges
-// are visible at the pose. O(edges).
-float OverrunShare(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model,
-                   const Pose& T_camera_model, const EdgeSamples& samples);
+struct Overrun {
+  float share =
+      0;  // of the ends of long visible edges, beyond which the left image shows an edge of the same direction
+  float crossed = 0;  // of long visible edges: those that such edges cross at both ends, as where a face goes on
+};
+
+// Do image edges go on where the model's end? An object's edges end at its corners; lines of clutter that happen to lie
+// right seldom do, and on a larger box all edges that run one way go on. `samples` tells which edges are visible at the
+// pose. O(edges).
+Overrun MeasureOverrun(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model,
+                       const Pose& T_camera_model, const EdgeSamples& samples);
 
 }  // namespace wirepose
 

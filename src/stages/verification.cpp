@@ -21,7 +21,9 @@ void GatherEvidence(const VerifyParams& params, const VerifyInput& in, const Pre
   RenderSurface(in.camera, model, T, scratch.surface);
   out.hidden = DropOccluded(params.occlusion, in.disparity, scratch.surface, scratch.samples);
   GatherEdgeEvidence(params, in, model, T, scratch.samples, out.edges);
-  out.edges.overrun = OverrunShare(in.camera, in.left_edges, model, T, scratch.samples);
+  const Overrun overrun = MeasureOverrun(in.camera, in.left_edges, model, T, scratch.samples);
+  out.edges.overrun = overrun.share;
+  out.edges.crossed = overrun.crossed;
   GatherSurfaceEvidence(params.surface, in.disparity, scratch.surface, out.surface);
   out.disparity_px = MeanDisparity(scratch.samples);
   out.rms_px = pose.rms_px;

