@@ -129,7 +129,7 @@ TEST_F(VerificationTest, OverrunCornersSpeakAgainst) {
   const RenderedScene scene = Show(T, sim::Texture::kPlain, 8);
   const EdgeEvidence right = Gather(scene, T).edges;
   EXPECT_LT(right.overrun, 0.35F);
-  EXPECT_EQ(right.crossed, 0);
+  EXPECT_LT(right.crossed, 0.15F);
   for (const double shift : {-0.06, 0.06}) {
     const EdgeEvidence slid = Gather(scene, T * Pose{Matrix3d::Identity(), {shift, 0, 0}}).edges;
     EXPECT_GT(slid.overrun, right.overrun) << shift;
