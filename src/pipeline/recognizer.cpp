@@ -274,8 +274,7 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   timer.Done(Stage::kCorrespondences);
 
   const SceneEdges scene = Edges();
-  const bool all_poses =
-      MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, pairs, hypotheses_);
+  const bool all_poses = MakeHypotheses(params_.hypotheses, scene, model, lines_, line_sets_, pairs, hypotheses_);
   result.budget_hit = result.budget_hit || !all_pairs || !all_poses;
   Count(hypotheses_.size(), kMaxHypotheses, hypotheses_.dropped(), result.statistics.hypotheses);
   const auto& hypotheses = hypotheses_.Sorted();

@@ -80,7 +80,8 @@ TEST(Score, NeverFallsWithEvidence) {
   for (const char* name : {"visible_px", "inside", "support", "sharp", "full_edges", "distinct", "on", "drop"}) {
     check(name, true);
   }
-  for (const char* name : {"chance", "overrun", "crossed", "hidden", "through", "rms_px", "uncertainty"}) check(name, false);
+  for (const char* name : {"chance", "overrun", "crossed", "hidden", "through", "rms_px", "uncertainty"})
+    check(name, false);
 }
 
 }  // namespace
