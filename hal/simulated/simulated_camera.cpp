@@ -24,6 +24,7 @@ namespace wirepose::hal {
 namespace {
 
 constexpr std::size_t kTruthsKept = 64;
+constexpr std::size_t kDetailRoom = 160;  // bytes of what the camera says of a frame
 
 void CopyImage(const dataset::GrayImage& from, const MutableImageView& to) {
   std::memcpy(to.data, from.pixels.data(), from.pixels.size());
@@ -353,6 +354,7 @@ CameraError SimulatedCamera::DoOpen(StereoCalibration& calibration) {
     cache.emplace(config_.cache_path / (sim::ContentHash(*spec, *targets) + "_" + std::to_string(config_.scene)));
   }
   worker_ = std::make_unique<Worker>(config_, *spec, *std::move(video), std::move(cache));
+  detail_.reserve(kDetailRoom);  // what a running camera says needs no heap
   detail_.clear();
   return CameraError::kOk;
 }
