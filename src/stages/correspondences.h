@@ -52,8 +52,9 @@ using CorrespondingPairs = KeepBestOfMany<CorrespondingPair, kMaxCorrespondences
 // any part of its edge that is not too short, but it cannot be longer. Symmetric models are searched from one edge of
 // each symmetry orbit. Pairs are ranked by the Gaussian likelihood of V under its own sigma, so that a precise
 // agreement beats a vague one, by length and cover of the lines, and by how many other lines fit the same assignment of
-// the base. O(pairs * representative base edges * members), at most `max_steps`: base lines come by falling length, and
-// those for which no steps are left are not searched. Returns false when that happened.
+// the base; members too far off to be kept are neither made nor counted. O(pairs * representative base edges *
+// members), at most `max_steps`: base lines come by falling length, and those for which no steps are left are not
+// searched. Returns false when that happened.
 bool FindCorrespondences(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                          const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out);
 

@@ -10,7 +10,7 @@
 
 namespace wirepose {
 
-// Disparity of every second pixel of every second row of the rectified left image.
+// Disparity of every second pixel of every second row of the rectified left image; kRowStep rows are alike.
 struct DisparityMap {
   static constexpr int kScale = 2;
   static constexpr int kMaxWidth = kMaxImageWidth / kScale, kMaxHeight = kMaxImageHeight / kScale;
@@ -58,7 +58,7 @@ struct DisparityScratch {
 
 // Semi-global matching (Hirschmueller 2008) at half resolution on locally normalised images, along three paths (from
 // the left, from the right, from above), so that a few rows of memory suffice; matches that the right image or the
-// neighbours do not confirm are unknown. Integers only. O(pixels / 4 * kMapDisparities * 3).
+// neighbours do not confirm are unknown. Integers only. O(pixels / (4 kRowStep) * kMapDisparities * 3).
 void ComputeDisparityMap(const DisparityMapParams& params, int width, int height, const NormalizedPlane& left,
                          const NormalizedPlane& right, DisparityScratch& scratch, DisparityMap& out);
 

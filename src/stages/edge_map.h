@@ -1,4 +1,5 @@
-// Where edges of which orientation are: one look-up answers "is there an edge along this direction, within 2 px?"
+// Where edges of which orientation are: one look-up answers "is there an edge along this direction, within 2 px?", to
+// the nearest cell of two pixels.
 #ifndef WIREPOSE_STAGES_EDGE_MAP_H_
 #define WIREPOSE_STAGES_EDGE_MAP_H_
 

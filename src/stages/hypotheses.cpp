@@ -91,7 +91,7 @@ class HypothesisMaker {
       if (std::abs(nd) > 0.1F) {
         ScoreInFrame(middle, (k * sign * other_a_.z() - offset) / nd, e2);
       } else if (match.junction != 0) {
-        ScoreInFrame(middle, AlongOfCorner(middle, pair.base_end, match.base_flipped != 0), e2);
+        ScoreInFrame(middle, AlongOfCorner(middle, pair.base_end), e2);
       }
     }
   }
@@ -107,12 +107,9 @@ class HypothesisMaker {
   }
 
   // Where the base edge's middle must lie along the base line, for its corner to be at the line's end `end`.
-  [[nodiscard]] float AlongOfCorner(const Vector3& middle, LineEnd end, bool flipped) const {
-    const Vector3& image = end == LineEnd::kA ? base_->a : base_->b;
-    const bool model_a = (end == LineEnd::kA) != flipped;
-    const float half = 0.5F * base_edge_->length_m;
-    // m1 runs from the edge's a to its b unless it is flipped.
-    return (image - middle).dot(d1_) - (model_a != flipped ? -half : half);
+  [[nodiscard]] float AlongOfCorner(const Vector3& middle, LineEnd end) const {
+    const float half = 0.5F * base_edge_->length_m;  // whichever way the edge runs, it reaches as far both ways
+    return end == LineEnd::kA ? (base_->a - middle).dot(d1_) + half : (base_->b - middle).dot(d1_) - half;
   }
 
   // The model's frame put to (d1, e2, d1 x e2), its origin `along` the base line from its middle.

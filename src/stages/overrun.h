@@ -9,10 +9,10 @@
 
 namespace wirepose {
 
+// Shares, 0..1; few edges count as four, so that little evidence says little.
 struct Overrun {
-  float share =
-      0;  // of the ends of long visible edges, beyond which the left image shows an edge of the same direction
-  float crossed = 0;  // of long visible edges: those that such edges cross at both ends, as where a face goes on
+  float share = 0;    // of the ends of long visible edges: beyond them the left image shows an edge of that direction
+  float crossed = 0;  // of long visible edges: such edges cross them at both ends, as where a face goes on
 };
 
 // Do image edges go on where the model's end? An object's edges end at its corners; lines of clutter that happen to lie

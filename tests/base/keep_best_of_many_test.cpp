@@ -6,18 +6,14 @@
 #include <random>
 #include <vector>
 
+#include "scored_item.h"
+
 namespace wirepose {
 namespace {
 
-struct Item {
-  int score;
-  int id;
-  bool operator==(const Item&) const = default;
-};
-// Higher score first, lower id among equals: a strict total order.
-struct Better {
-  bool operator()(const Item& a, const Item& b) const { return a.score != b.score ? a.score > b.score : a.id < b.id; }
-};
+using testing::Better;
+using testing::Item;
+
 using Best = KeepBestOfMany<Item, 10, Better>;
 
 // Against sorting everything; few distinct scores, so that ties are common. What it claims on the way must hold:

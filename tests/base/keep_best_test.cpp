@@ -6,18 +6,13 @@
 #include <random>
 #include <vector>
 
+#include "scored_item.h"
+
 namespace wirepose {
 namespace {
 
-struct Item {
-  int score;
-  int id;
-  bool operator==(const Item&) const = default;
-};
-// Higher score first, lower id among equals: a strict total order.
-struct Better {
-  bool operator()(const Item& a, const Item& b) const { return a.score != b.score ? a.score > b.score : a.id < b.id; }
-};
+using testing::Better;
+using testing::Item;
 
 TEST(KeepBest, BelowCapacityKeepsAll) {
   KeepBest<Item, 20, Better> best;

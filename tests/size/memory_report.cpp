@@ -33,7 +33,7 @@ constexpr Member kMembers[] = {
      "the "
      "costs of a corner"},
     {"disparity map", sizeof(DisparityMap), 1, "kMaxPixels / 4", "surfaces between the lines"},
-    {"edge maps", sizeof(EdgeMap), 2, "kMaxPixels x 16 directions", "one look-up a sample when poses are scored"},
+    {"edge maps", sizeof(EdgeMap), 2, "kMaxPixels / 4 x 16 directions", "one look-up a sample when poses are scored"},
     {"2D segments", sizeof(Segments), 1, "kMaxSegments", "real kitchens show 150 to 300; the longest are kept"},
     {"3D lines", sizeof(Lines3), 1, "kMaxSegments", "one a left segment"},
     {"corners and row offsets", sizeof(Corners) + sizeof(RowOffsets), 1, "kMaxRowOffsets",
