@@ -59,7 +59,10 @@ class BusTest : public ::testing::Test {
   // Ends it: what it counted, by topic. Empty when it did not end well.
   static std::map<std::string, nlohmann::json> Finish(Process& subscriber) {
     subscriber.Signal(SIGTERM);
-    if (subscriber.Wait() != 0) return {};
+    if (subscriber.Wait() != 0) {
+      ADD_FAILURE() << "the subscriber did not end well: " << subscriber.Err();
+      return {};
+    }
     std::map<std::string, nlohmann::json> tallies;
     for (const std::string& line : subscriber.OutLines()) {
       if (line[0] != '{') continue;

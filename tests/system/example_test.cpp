@@ -10,6 +10,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// An instrumented library asks the programs that link it for the same.
+#ifdef __SANITIZE_ADDRESS__
+constexpr const char* kFlags = "-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined";
+#else
+constexpr const char* kFlags = "-DCMAKE_CXX_FLAGS=";
+#endif
+
 class ExampleTest : public RobotTest {
  protected:
   // The part for developers, under a prefix of its own.
@@ -17,7 +24,7 @@ class ExampleTest : public RobotTest {
   // Configures and builds the installed example.
   void Build() {
     RunCmake("configure", {"-S", prefix() + "/share/wirepose/examples/cpp_subscriber", "-B", build(),
-                           "-DCMAKE_PREFIX_PATH=" + prefix()});
+                           "-DCMAKE_PREFIX_PATH=" + prefix(), kFlags});
     RunCmake("compile", {"--build", build()});
   }
   void RunCmake(const std::string& name, const std::vector<std::string>& arguments) {

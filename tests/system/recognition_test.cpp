@@ -93,7 +93,7 @@ class RecognitionTest : public RobotTest {
 
   void Run(const std::vector<std::string>& command) const {
     Process process(folder_, "prepare", command);
-    ASSERT_EQ(process.Wait(std::chrono::seconds(120)), 0) << process.Err();
+    ASSERT_EQ(process.Wait(std::chrono::seconds(400)), 0) << process.Err();  // instrumented, it renders for 100 s
   }
 
   // Cuts the left picture in the middle, as a full disk does.

@@ -194,7 +194,7 @@ TEST_F(WireposedTest, TellsSystemdReadyAliveAndStopping) {
 
   Process robot(folder_, "robot", Robot(LoopingConfig(), {"--frames", "20"}),
                 {"NOTIFY_SOCKET=" + path, "WATCHDOG_USEC=400000"});
-  ASSERT_EQ(robot.Wait(), 0) << robot.Err();
+  ASSERT_EQ(robot.Wait(std::chrono::seconds(120)), 0) << robot.Err();
   std::vector<std::string> received;
   char text[1024];
   for (ssize_t size = 0; (size = recv(notifications, text, sizeof text, MSG_DONTWAIT)) > 0;) {
