@@ -15,7 +15,7 @@ enum class LineOwner : std::uint8_t { kBoth, kBright, kDark };
 // Disparity is linear along an image line, so two numbers place it in space. Their covariance is kept in disparity,
 // where it is nearly Gaussian; it grows with depth squared when turned into metres.
 struct Line3 {
-  std::uint16_t id = 0;    // index of its segment in the left image
+  std::uint16_t id = 0;    // index of its segment among those matched in the left image
   bool has_depth = false;  // false: only the plane through camera centre and segment is known
   LineOwner owner = LineOwner::kBoth;
   Segment2 segment;                                  // left rectified image

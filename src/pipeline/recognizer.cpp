@@ -174,13 +174,12 @@ void Recognizer::Recognize(StageTimer& timer, RecognitionResult& result) {
   timer.Done(Stage::kSelect);
 }
 
-void Recognizer::KeepSegmentsInRegion() {
-  auto& items = left_segments_.items;
-  std::size_t kept = 0;
-  for (const Segment2& segment : items) {
-    if (SeenIn(region_, rectification_.left, segment.Middle())) items[kept++] = segment;
+void Recognizer::SelectSegments() {
+  searched_segments_.items.clear();
+  for (const Segment2& segment : left_segments_.items) {
+    if (region_.Whole() || SeenIn(region_, rectification_.left, segment.Middle()))
+      searched_segments_.items.push_back(segment);
   }
-  items.resize(kept);
 }
 
 void Recognizer::FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
@@ -205,7 +204,7 @@ void Recognizer::FindFeatures(ImageView left, ImageView right, StageTimer& timer
   FindEdges(right_rectified_, rectification_.right, right_smooth_, right_edges_, nullptr, statistics.edge_pixels);
   FindLeftEdges(statistics);
   FindCorners(params_.row_offsets, left_smooth_, width, height, left_segments_, corners_);
-  if (!region_.Whole()) KeepSegmentsInRegion();
+  SelectSegments();
   timer.Done(Stage::kSegments);
 
   MatchEyes();
@@ -223,14 +222,14 @@ void Recognizer::FindFeatures(ImageView image, const DepthView& depth, StageTime
   right_edges_.threshold = right_edges_.background = 0;
   row_offsets_.clear();
   FindLeftEdges(statistics);
-  if (!region_.Whole()) KeepSegmentsInRegion();
+  SelectSegments();
   timer.Done(Stage::kSegments);
 
   Arena arena(stage_scratch_);
   auto& disparities = *arena.Create<DisparityImage>();
   FillDisparityImage(params_.depth_image, camera(), rectification_.left, depth, disparities);
   ShrinkDisparity(disparities, disparity_);
-  PlaceLines(params_.depth_lines, camera(), disparities, left_segments_, lines_);
+  PlaceLines(params_.depth_lines, camera(), disparities, searched_segments_, lines_);
   timer.Done(Stage::kStereoLines);
   RelateLines(timer, statistics);
 }
@@ -258,7 +257,7 @@ void Recognizer::MatchEyes() {
                         *arena.Create<DisparityScratch>(), disparity_);
   }
   MatchLines(params_.stereo, {camera(), left_normalized_, right_normalized_, right_smooth_, rectification_.right},
-             left_segments_, stereo_scratch_, lines_);
+             searched_segments_, stereo_scratch_, lines_);
   Arena arena(stage_scratch_);
   MeasureRowOffsets(params_.row_offsets,
                     {width, height, left_normalized_, right_normalized_, left_smooth_, right_smooth_,
@@ -331,7 +330,8 @@ void Recognizer::RefinePriors(std::size_t m) {
 }
 
 void Recognizer::Judge(Candidate& candidate) {
-  const VerifyInput input{camera(), left_edges_, right_edges_, left_smooth_, right_smooth_, disparity_};
+  const VerifyInput input{camera(),      left_edges_, right_edges_,   left_smooth_,
+                          right_smooth_, disparity_,  left_segments()};
   GatherEvidence(params_.verify, input, models_[candidate.model], candidate.pose, verify_scratch_, candidate.evidence);
   candidate.score = ScoreOf(DefaultScoreTable(), TermsOf(candidate.evidence));
 }

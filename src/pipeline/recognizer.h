@@ -192,7 +192,7 @@ class Recognizer {
     return {plane.data(), camera().width, camera().height, kMaxImageWidth};
   }
   [[nodiscard]] bool Searched(std::size_t m) const { return ((searched_ >> m) & 1U) != 0; }
-  void KeepSegmentsInRegion();
+  void SelectSegments();
   void MatchEyes();
   // The shared beginning of both Configure: the size, and of both Process: calibration, kind of camera and size.
   static bool Fits(int width, int height);
@@ -247,6 +247,7 @@ class Recognizer {
   NormalizedPlane left_normalized_, right_normalized_;
   EdgeMap left_edges_, right_edges_;
   Segments left_segments_;
+  Segments searched_segments_;  // those in the region
   Corners corners_;
   DisparityMap disparity_;
   RowOffsets row_offsets_;

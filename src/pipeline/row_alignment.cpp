@@ -118,7 +118,7 @@ void AlignmentMonitor::Update(const RectifiedCamera& camera, std::span<const Row
 
 void AlignmentMonitor::AddToSteady(const Normal& frame, const Vector5& motion) {
   // What is far from all before may be a wild frame, or the beginning of something new: it counts, but less.
-  constexpr double kNear_px = 2 * double{kLimit_px};
+  constexpr double kNear_px = 2 * static_cast<double>(kLimit_px);
   double share = 1;
   if (steady_.weight > 0) {
     const double distance = std::sqrt(std::max(0.0, frame.Power(motion - steady_.Solve())));

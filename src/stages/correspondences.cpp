@@ -16,13 +16,7 @@ class Matcher {
  public:
   Matcher(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
           const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out)
-      : params_(params),
-        camera_(camera),
-        model_(model),
-        lines_(lines),
-        sets_(sets),
-        out_(out),
-        budget_(params.max_steps) {
+      : params_(params), camera_(camera), model_(model), sets_(sets), out_(out), budget_(params.max_steps) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (!lines[i].has_depth) continue;
       length_[i] = lines[i].Length();
@@ -184,7 +178,6 @@ class Matcher {
   const CorrespondenceParams& params_;
   const RectifiedCamera& camera_;
   const PreparedModel& model_;
-  const Lines3& lines_;
   const ImageLineSets& sets_;
   CorrespondingPairs& out_;
   std::array<float, kMaxSegments> length_{}, slack_{};  // of lines with depth, m

@@ -4,6 +4,7 @@ namespace wirepose {
 
 EvidenceTerms TermsOf(const Evidence& evidence) {
   const EdgeEvidence& e = evidence.edges;
+  const LineEvidence& l = evidence.lines;
   const SurfaceEvidence& s = evidence.surface;
   return {e.visible_px,
           e.inside,
@@ -28,6 +29,13 @@ EvidenceTerms TermsOf(const Evidence& evidence) {
           e.weakest_face,
           e.overrun,
           e.crossed,
+          l.crossing,
+          l.crossings,
+          l.inner_crossings,
+          l.beyond,
+          l.within,
+          l.across,
+          l.contained,
           evidence.hidden,
           s.on,
           s.through,
@@ -63,6 +71,13 @@ const std::array<const char*, kEvidenceTerms>& EvidenceTermNames() {
                                                                      "weakest_face",
                                                                      "overrun",
                                                                      "crossed",
+                                                                     "crossing",
+                                                                     "crossings",
+                                                                     "inner_crossings",
+                                                                     "beyond",
+                                                                     "within",
+                                                                     "across",
+                                                                     "contained",
                                                                      "hidden",
                                                                      "on",
                                                                      "through",

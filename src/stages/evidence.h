@@ -3,9 +3,11 @@
 #define WIREPOSE_STAGES_EVIDENCE_H_
 
 #include <array>
+#include <span>
 
 #include "stages/disparity_map.h"
 #include "stages/edge_map.h"
+#include "stages/line_evidence.h"
 #include "stages/occlusion.h"
 #include "stages/sample_edges.h"
 #include "stages/surface_evidence.h"
@@ -16,6 +18,7 @@ struct VerifyParams {
   SampleParams samples{.step_px = 4};
   OcclusionParams occlusion;
   SurfaceEvidenceParams surface;
+  LineEvidenceParams lines;
   int piece_samples = 5;           // neighbouring samples of an edge whose profiles are averaged
   float noise_floor = 0.6F;        // grey levels per pixel that an averaged profile may show of nothing
   float max_offset_px = 2.2F;      // of a supporting image edge from the model edge, in each image ...
@@ -55,13 +58,14 @@ struct EdgeEvidence {
 struct Evidence {
   EdgeEvidence edges;
   float hidden = 0;         // share of the visible edges' length before which something nearer stands
+  LineEvidence lines;       // of the left image's segments, against the model's edges and silhouette
   SurfaceEvidence surface;  // of the disparity map, inside the silhouette and beside it
   float disparity_px = 0;   // of the object's edges, mean: how well depth can be told
   float rms_px = 0;         // what the refinement left
   float uncertainty = 0;    // of the position by what the visible edges determine, over the diameter
 };
 
-inline constexpr std::size_t kEvidenceTerms = 32;
+inline constexpr std::size_t kEvidenceTerms = 39;
 using EvidenceTerms = std::array<float, kEvidenceTerms>;
 
 // The terms in a fixed order, as the score reads them, and their names in that order.
@@ -75,6 +79,7 @@ struct VerifyInput {
   const SmoothPlane& left_smooth;
   const SmoothPlane& right_smooth;
   const DisparityMap& disparity;
+  std::span<const Segment2> segments;  // of the whole left image
 };
 
 }  // namespace wirepose

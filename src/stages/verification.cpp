@@ -24,6 +24,7 @@ void GatherEvidence(const VerifyParams& params, const VerifyInput& in, const Pre
   const Overrun overrun = MeasureOverrun(in.camera, in.left_edges, model, T, scratch.samples);
   out.edges.overrun = overrun.share;
   out.edges.crossed = overrun.crossed;
+  GatherLineEvidence(params.lines, in.camera, in.segments, model, T, scratch.samples, scratch.surface, out.lines);
   GatherSurfaceEvidence(params.surface, in.disparity, scratch.surface, out.surface);
   out.disparity_px = MeanDisparity(scratch.samples);
   out.rms_px = pose.rms_px;

@@ -69,7 +69,8 @@ TEST_F(StressTest, ManySubscribers) {
   longest_publish_ = {};
   Publish(100, report_, milliseconds(33));
   std::printf("%d subscribers of 3 topics: pool %zu KiB, %zu at most; longest hand-over %.3f ms; %llu dropped\n",
-              kManySubscribers, UsedKib(), DdsPoolUse().high_water >> 10, 1e-6 * static_cast<double>(longest_publish_.count()),
+              kManySubscribers, UsedKib(), DdsPoolUse().high_water >> 10,
+              1e-6 * static_cast<double>(longest_publish_.count()),
               static_cast<unsigned long long>(publisher_->results_dropped()));
   EXPECT_LT(longest_publish_, kNoStall);
   for (const auto& subscriber : subscribers) {

@@ -23,9 +23,16 @@ class VerificationTest : public ::testing::Test {
     pose.covariance *= 1e-6;
     ComputeDisparityMap({}, scene.camera.width, scene.camera.height, scene.left->normalized, scene.right->normalized,
                         *disparity_scratch_, *disparity_);
-    GatherEvidence(
-        {}, {scene.camera, scene.left->map, scene.right->map, scene.left->smooth, scene.right->smooth, *disparity_},
-        *model_, pose, *scratch_, evidence);
+    const auto& segments = scene.left->segments.items;
+    GatherEvidence({},
+                   {scene.camera,
+                    scene.left->map,
+                    scene.right->map,
+                    scene.left->smooth,
+                    scene.right->smooth,
+                    *disparity_,
+                    {segments.begin(), segments.end()}},
+                   *model_, pose, *scratch_, evidence);
     return evidence;
   }
   RenderedScene Show(const Pose& T, sim::Texture texture, std::uint64_t seed) {
@@ -127,13 +134,16 @@ TEST_F(VerificationTest, OverrunCornersSpeakAgainst) {
   Random random(4);
   const Pose T = testing::GoodView(random, *model_);
   const RenderedScene scene = Show(T, sim::Texture::kPlain, 8);
-  const EdgeEvidence right = Gather(scene, T).edges;
+  const Evidence truth = Gather(scene, T);
+  const EdgeEvidence& right = truth.edges;
   EXPECT_LT(right.overrun, 0.35F);
   EXPECT_LT(right.crossed, 0.15F);
+  EXPECT_LT(truth.lines.beyond, 0.05F);
   for (const double shift : {-0.06, 0.06}) {
-    const EdgeEvidence slid = Gather(scene, T * Pose{Matrix3d::Identity(), {shift, 0, 0}}).edges;
-    EXPECT_GT(slid.overrun, right.overrun) << shift;
-    EXPECT_GT(slid.crossed, 0.15F) << shift;  // edges around the end of the box that stands within the true one
+    const Evidence slid = Gather(scene, T * Pose{Matrix3d::Identity(), {shift, 0, 0}});
+    EXPECT_GT(slid.lines.beyond, 0.1F) << shift;
+    EXPECT_GT(slid.edges.overrun, right.overrun) << shift;
+    EXPECT_GT(slid.edges.crossed, 0.15F) << shift;  // edges around the end of the box that stands within the true one
   }
 }
 
@@ -257,9 +267,10 @@ TEST_F(VerificationTest, AnyPoseGivesFiniteEvidence) {
     const Evidence e = Gather(scene, T);
     for (const float term : TermsOf(e)) EXPECT_TRUE(std::isfinite(term));
     const EdgeEvidence& edges = e.edges;
-    for (const float share : {edges.inside, edges.support, edges.chance, edges.sharp, edges.sharp_of_support,
-                              edges.full_edges, edges.weakest_edge, edges.distinct, edges.clear, edges.dimmest_edge,
-                              edges.overrun, edges.crossed, e.hidden, e.surface.on, e.surface.on + e.surface.through}) {
+    for (const float share :
+         {edges.inside, edges.support, edges.chance, edges.sharp, edges.sharp_of_support, edges.full_edges,
+          edges.weakest_edge, edges.distinct, edges.clear, edges.dimmest_edge, edges.overrun, edges.crossed,
+          e.lines.crossing, e.lines.contained, e.hidden, e.surface.on, e.surface.on + e.surface.through}) {
       EXPECT_TRUE(share >= 0 && share <= 1.001F) << share;
     }
   }
