@@ -33,7 +33,7 @@ struct Row {
   double residual = 0;  // px, image edge minus model edge along the normal
   double weight = 0;
   std::uint16_t edge = 0;
-  std::uint8_t image = 0;  // 0: left
+  std::uint8_t image = 0;            // 0: left
   Vector2 normal = Vector2::Zero();  // as measured: a thousand rows lie on the stack
 };
 
