@@ -89,7 +89,7 @@ class Gatherer {
     if (!both_sides && nearer >= params_.touch_px) return;
     const float cosine = std::abs(b - a) / segment.Length();
     if (cosine < params_.along_cosine) {
-      if (farther < params_.along_px && std::abs(a + b) < 5) AddAlong(edge, segment);
+      if (farther < params_.along_px && std::abs(a + b) < 2 * params_.middle_px) AddAlong(edge, segment);
     } else if (cosine >= params_.min_cosine) {
       const bool crosses = both_sides && nearer > params_.cross_px;
       const bool ends = nearer < params_.touch_px && farther > params_.leave_px;

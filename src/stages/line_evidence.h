@@ -20,7 +20,8 @@ struct LineEvidenceParams {
   float touch_px = 4;          // one that ends at the edge comes this near ...
   float leave_px = 8;          // ... and reaches this far to one side
   float along_cosine = 0.12F;  // to the edge's normal: steeper segments do not lie along it
-  float along_px = 4;          // distance from the edge of what lies along it, at both ends; 2.5 px in the middle
+  float along_px = 4;          // distance from the edge of what lies along it, at both ends ...
+  float middle_px = 2.5F;      // ... and in its middle
   float along_share = 0.3F;    // of the segment that lies beside the edge
 };
 
@@ -36,8 +37,10 @@ struct LineEvidence {
   float contained = 0;        // share of the former in both
 };
 
-// `samples`: of the edges that are seen at the pose; `surface`: the silhouette there. Few segments count for little:
-// shares are diluted by two segments or 50 px. O(edges * segments).
+// `segments`: of the whole rectified left image, px; `samples`: of the edges that are seen at T_camera_model (rectified
+// left camera), in the order of edges; `surface`: the silhouette there. Few segments count for little: shares are
+// diluted by two segments or 50 px, `beyond` by 25 px, numbers per 100 px by 100 px. Nothing seen gives zeros. No heap.
+// O(edges * segments).
 void GatherLineEvidence(const LineEvidenceParams& params, const RectifiedCamera& camera,
                         std::span<const Segment2> segments, const PreparedModel& model, const Pose& T_camera_model,
                         const EdgeSamples& samples, const SurfaceMap& surface, LineEvidence& out);

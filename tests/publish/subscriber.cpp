@@ -152,9 +152,8 @@ int Main(int argc, char** argv) {
 }  // namespace wirepose
 
 // Asked by LeakSanitizer where it is linked in: Cyclone DDS 0.10 keeps 2 KiB of a participant that was found again.
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:libddsc.so\n";
-}  // NOLINT(bugprone-reserved-identifier)
+// NOLINTNEXTLINE(bugprone-reserved-identifier)
+extern "C" const char* __lsan_default_suppressions() { return "leak:libddsc.so\n"; }
 
 int main(int argc, char** argv) {
   if (argc < 3) {
