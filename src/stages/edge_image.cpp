@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 #include "base/simd.h"
 
@@ -86,23 +87,6 @@ WIREPOSE_VECTOR_KERNEL void MarkRidges(const EdgeImage& image, int y, int begin,
   for (int x = begin; x < end; ++x) ridge[x] = static_cast<std::uint8_t>(kinds[static_cast<std::size_t>(x)]);
 }
 
-// Counting sort of the collected ridge pixels by falling magnitude, stable in the order of rows.
-void SortRidges(EdgeImage& image) {
-  std::array<std::uint32_t, kLastBucket + 1> start{};
-  const auto bucket = [&](std::uint32_t i) {
-    return kLastBucket - std::min<std::size_t>(image.magnitude[i] / 16, kLastBucket);
-  };
-  for (std::uint32_t k = 0; k < image.ridge_count; ++k) ++start[bucket(image.found[k])];
-  std::uint32_t sum = 0;
-  for (std::uint32_t& s : start) {
-    const std::uint32_t count = s;
-    s = sum;
-    sum += count;
-  }
-  for (std::uint32_t k = 0; k < image.ridge_count; ++k)
-    image.ridge_pixels[start[bucket(image.found[k])]++] = image.found[k];
-}
-
 std::size_t BucketOf(std::uint16_t magnitude) { return std::min<std::size_t>(magnitude / 16, kLastBucket); }
 
 // Calls use(i) for every ridge pixel with at least `threshold` of magnitude, and writes its kind to image.ridge.
@@ -150,7 +134,7 @@ void CollectStrongest(const RectificationMap& map, EdgeImage& image) {
       ++room;
       image.ridge[i] = 0;
     } else {
-      image.found[image.ridge_count++] = i;
+      image.ridge_pixels[image.ridge_count++] = i;
     }
   });
   image.ridge_dropped = total - image.ridge_count;
@@ -160,7 +144,7 @@ void CollectRidges(const RectificationMap& map, EdgeImage& image) {
   ClearRidges(image);
   ForEachRidge(map, image.threshold, image, [&](std::uint32_t i) {
     if (image.ridge_count < kMaxRidgePixels) {
-      image.found[image.ridge_count++] = i;
+      image.ridge_pixels[image.ridge_count++] = i;
     } else {
       ++image.ridge_dropped;
     }
@@ -203,7 +187,23 @@ void FindRidges(const SmoothPlane& smooth, int width, int height, const Rectific
   // Texture everywhere must not silence the edges: the noise estimate is trusted up to 4 grey levels per pixel.
   out.threshold = static_cast<std::uint16_t>(std::min(threshold, 4.0F * kGradientOne));
   CollectRidges(map, out);
-  SortRidges(out);
+}
+
+// Counting sort.
+void SortRidges(EdgeImage& image) {
+  std::array<std::uint32_t, kLastBucket + 1> start{};
+  const std::span<const std::uint32_t> pixels(image.ridge_pixels.data(), image.ridge_count);
+  const auto place = [&](std::uint32_t i) -> std::uint32_t& {
+    return start[kLastBucket - BucketOf(image.magnitude[i])];
+  };
+  for (const std::uint32_t i : pixels) ++place(i);
+  std::uint32_t sum = 0;
+  for (std::uint32_t& s : start) {
+    const std::uint32_t count = s;
+    s = sum;
+    sum += count;
+  }
+  for (const std::uint32_t i : pixels) image.by_magnitude[place(i)++] = i;
 }
 
 }  // namespace wirepose

@@ -32,8 +32,8 @@ struct EdgeImage {
   std::array<std::int16_t, kMaxPixels> gx, gy;              // kGradientOne
   std::array<std::uint16_t, kMaxPixels> magnitude;          // kGradientOne
   std::array<std::uint8_t, kMaxPixels> ridge;               // Ridge
-  std::array<std::uint32_t, kMaxRidgePixels> ridge_pixels;  // by falling magnitude
-  std::array<std::uint32_t, kMaxRidgePixels> found;         // work space: the same in the order of rows
+  std::array<std::uint32_t, kMaxRidgePixels> ridge_pixels;  // in the order of rows
+  std::array<std::uint32_t, kMaxRidgePixels> by_magnitude;  // the same, after SortRidges
   std::uint32_t ridge_count = 0;
   std::uint32_t ridge_dropped = 0;
   std::uint16_t threshold = 0;  // magnitude from which on a pixel may be a ridge
@@ -53,6 +53,9 @@ void SmoothImage(ImageView image, SmoothPlane& smooth);
 // the valid interval's end or the image border are no ridges. O(pixels).
 void FindRidges(const SmoothPlane& smooth, int width, int height, const RectificationMap& map,
                 const EdgeImageParams& params, EdgeImage& out);
+
+// Fills by_magnitude: strongest first, those of one strength (to half a grey level) in the order of rows. O(ridges).
+void SortRidges(EdgeImage& image);
 
 }  // namespace wirepose
 

@@ -158,7 +158,10 @@ class Refiner {
       const double r = row.residual / (2 * sigma_);
       const double k = 1 / (1 + r * r);
       row.weight = k * k;
-      H_ += row.weight * row.J.transpose() * row.J;
+      const Vector6d pull = row.weight * row.J.transpose();
+      for (int c = 0; c < 6; ++c) {
+        for (int i = c; i < 6; ++i) H_(i, c) += pull(i) * row.J(c);
+      }
       g += row.weight * row.residual * row.J.transpose();
     }
     AddSurface(scratch_.surface_rows, UnitVariance(), H_, g);
@@ -242,7 +245,7 @@ class Refiner {
   RefineScratch& scratch_;
   Rows rows_;
   std::array<std::uint16_t, kMaxModelEdges> found_{}, sampled_{};
-  Matrix6d H_ = Matrix6d::Zero();
+  Matrix6d H_ = Matrix6d::Zero();  // its lower triangle: all that LDLT reads
   double sigma_ = 1;
 };
 

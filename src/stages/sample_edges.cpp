@@ -6,21 +6,17 @@
 namespace wirepose {
 namespace {
 
-// Where the segment eye -> point meets a triangle, as a share of its length; outside [0, 1] or NaN: nowhere that hides.
-// (Moeller & Trumbore 1997.)
-bool Blocks(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& eye, const Vector3& ray) {
-  const Vector3 ab = b - a, ac = c - a;
-  const Vector3 p = ray.cross(ac);
-  const float det = ab.dot(p);
-  if (std::abs(det) < 1e-12F) return false;
-  const Vector3 s = eye - a;
-  const float u = s.dot(p) / det;
-  if (u < 0 || u > 1) return false;
-  const Vector3 q = s.cross(ab);
-  const float v = ray.dot(q) / det;
-  if (v < 0 || u + v > 1) return false;
-  const float t = ac.dot(q) / det;
-  return t > 0 && t < 0.997F;  // what is nearer than 3 per mille of the distance belongs to the edge itself
+// What rays from `eye` need to know of a triangle.
+void PrepareRays(const ModelView& model, const Vector3& eye, FrontTriangle& out) {
+  const auto& vertex = model.triangles[out.triangle].vertex;
+  const Vector3 a = model.VertexPosition(vertex[0]);
+  const Vector3 p = model.VertexPosition(vertex[1]) - a, q = model.VertexPosition(vertex[2]) - a, s = eye - a;
+  const Vector3 normal = p.cross(q);
+  const float side = s.dot(normal) < 0 ? -1 : 1;  // whichever way the corners turn
+  out.d = -side * normal;
+  out.u = side * q.cross(s);
+  out.v = side * s.cross(p);
+  out.h = side * s.dot(normal);
 }
 
 // Image of a point in the rectified pair.
@@ -52,7 +48,11 @@ void FindFrontTriangles(const RectifiedCamera& camera, const ModelView& model, c
   for (std::size_t i = 0; i < model.triangles.size(); ++i) {
     const ModelTriangle& triangle = model.triangles[i];
     if (!IsTowards(model.faces[triangle.face], eye)) continue;
-    FrontTriangle front{static_cast<std::uint16_t>(i), Vector2(1e9F, 1e9F), Vector2(-1e9F, -1e9F)};
+    FrontTriangle front;
+    front.triangle = static_cast<std::uint16_t>(i);
+    front.face = triangle.face;
+    front.low.setConstant(1e9F);
+    front.high.setConstant(-1e9F);
     for (const std::uint16_t v : triangle.vertex) {
       const Vector3 p = R * model.VertexPosition(v) + t;
       if (p.z() < 0.02F) {  // reaches behind the camera: may hide anything
@@ -64,36 +64,29 @@ void FindFrontTriangles(const RectifiedCamera& camera, const ModelView& model, c
       front.low = front.low.cwiseMin(u);
       front.high = front.high.cwiseMax(u);
     }
+    PrepareRays(model, eye, front);
     out.push_back(front);
   }
 }
 
-bool IsHidden(const ModelView& model, const FrontTriangles& front, const Vector3& eye, const Vector3& point,
-              const Vector2& image, std::uint16_t a, std::uint16_t b) {
-  const Vector3 ray = point - eye;
-  for (const FrontTriangle& f : front) {
-    if (image.x() < f.low.x() || image.y() < f.low.y() || image.x() > f.high.x() || image.y() > f.high.y()) continue;
-    const ModelTriangle& t = model.triangles[f.triangle];
-    if (t.face == a || t.face == b) continue;
-    if (Blocks(model.VertexPosition(t.vertex[0]), model.VertexPosition(t.vertex[1]), model.VertexPosition(t.vertex[2]),
-               eye, ray)) {
-      return true;
-    }
-  }
-  return false;
+bool IsHidden(const FrontTriangles& front, const Vector3& ray, const Vector2& image, std::uint16_t face) {
+  return std::any_of(front.begin(), front.end(),
+                     [&](const FrontTriangle& f) { return f.face != face && f.Hides(ray, image); });
 }
 
 namespace {
 
-// Front triangles other than those of faces `f` and `g` whose bounding box meets that of the image edge a-b.
-void FindNear(const ModelView& model, const FrontTriangles& front, const Vector2& a, const Vector2& b, std::uint16_t f,
-              std::uint16_t g, FrontTriangles& out) {
+using NearTriangles = FixedVector<std::uint16_t, kMaxModelTriangles>;  // indices of front triangles
+
+// Front triangles other than those of the edge's own faces whose bounding box meets that of the image edge a-b.
+void FindNear(const FrontTriangles& front, const Vector2& a, const Vector2& b, const ModelEdge& edge,
+              NearTriangles& out) {
   const Vector2 low = a.cwiseMin(b), high = a.cwiseMax(b);
   out.clear();
-  for (const FrontTriangle& t : front) {
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const FrontTriangle& t = front[i];
     if (t.low.x() > high.x() || t.low.y() > high.y() || t.high.x() < low.x() || t.high.y() < low.y()) continue;
-    const std::uint16_t face = model.triangles[t.triangle].face;
-    if (face != f && face != g) out.push_back(t);
+    if (t.face != edge.face[0] && t.face != edge.face[1]) out.push_back(static_cast<std::uint16_t>(i));
   }
 }
 
@@ -124,7 +117,7 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
   });
   const float step = std::max(params.step_px, total / static_cast<float>(kMaxEdgeSamples));
 
-  FrontTriangles near_edge;  // that may hide a part of the edge at hand
+  NearTriangles near_edge;  // that may hide a part of the edge at hand
   for_each_edge([&](std::size_t e, const Vector3& a, const Vector3& b, const Seen& pa, const Seen& pb, float length) {
     const int n = std::max(1, static_cast<int>(length / step));
     EdgeSample sample;
@@ -132,8 +125,7 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
     sample.tangent = Unit(pb.left - pa.left);
     sample.tangent_right = Unit(pb.left - pa.left - Vector2(pb.disparity - pa.disparity, 0));
     sample.weight_px = length / static_cast<float>(n);
-    const ModelEdge& edge = model.view.edges[e];
-    if (!model.convex) FindNear(model.view, scratch, pa.left, pb.left, edge.face[0], edge.face[1], near_edge);
+    if (!model.convex) FindNear(scratch, pa.left, pb.left, model.view.edges[e], near_edge);
     for (int k = 0; k < n && !out.full(); ++k) {
       // Even steps in the image are uneven steps in space: interpolate with the depths.
       const float s = (static_cast<float>(k) + 0.5F) / static_cast<float>(n);
@@ -141,10 +133,8 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
       sample.point = model.edges[e].a + w * (model.edges[e].b - model.edges[e].a);
       sample.left = pa.left + s * (pb.left - pa.left);
       sample.disparity = pa.disparity + s * (pb.disparity - pa.disparity);
-      if (!near_edge.empty() &&
-          IsHidden(model.view, near_edge, eye, sample.point, sample.left, edge.face[0], edge.face[1]))
-        continue;
-      out.push_back(sample);
+      const auto hides = [&](std::uint16_t i) { return scratch[i].Hides(sample.point - eye, sample.left); };
+      if (std::none_of(near_edge.begin(), near_edge.end(), hides)) out.push_back(sample);
     }
   });
 }

@@ -29,10 +29,22 @@ struct SampleParams {
   float max_depth_ratio = 8;  // edges that come closer than depth / ratio are left out: they run through the camera
 };
 
-// A triangle that faces the camera: all that can hide anything. With its bounding box in the left image.
+// A triangle (a, a + p, a + q) that faces the camera: all that can hide anything. With its bounding box in the left
+// image, and what is the same for all rays from the eye: a ray r meets the plane at h / (r d) of its length, and the
+// triangle where r u >= 0, r v >= 0 and r u + r v <= r d. (Moeller & Trumbore 1997, for one origin.)
 struct FrontTriangle {
-  std::uint16_t triangle = 0;
-  Vector2 low = Vector2::Zero(), high = Vector2::Zero();  // px
+  std::uint16_t triangle = 0, face = 0;
+  Vector2 low = Vector2::Zero(), high = Vector2::Zero();                  // px
+  Vector3 d = Vector3::Zero(), u = Vector3::Zero(), v = Vector3::Zero();  // m^2, model frame
+  float h = 0;                                                            // m^3
+
+  // True when it lies between the eye and the end of `ray`, which appears at `image`. What is nearer to the end than 3
+  // per mille of the distance belongs to the end itself.
+  [[nodiscard]] bool Hides(const Vector3& ray, const Vector2& image) const {
+    if (image.x() < low.x() || image.y() < low.y() || image.x() > high.x() || image.y() > high.y()) return false;
+    const float rd = ray.dot(d), ru = ray.dot(u), rv = ray.dot(v);
+    return h < 0.997F * rd && ru >= 0 && rv >= 0 && ru + rv <= rd;
+  }
 };
 using FrontTriangles = FixedVector<FrontTriangle, kMaxModelTriangles>;
 
@@ -43,10 +55,9 @@ using FrontTriangles = FixedVector<FrontTriangle, kMaxModelTriangles>;
 void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                         const Pose& T_camera_model, FrontTriangles& scratch, EdgeSamples& out);
 
-// True when a front triangle other than those of faces `a` and `b` lies between `eye` and `point` (model frame), which
+// True when a front triangle of another face than `face` hides the end of `ray` from the eye (model frame), which
 // appears at `image` in the left image. O(front triangles).
-bool IsHidden(const ModelView& model, const FrontTriangles& front, const Vector3& eye, const Vector3& point,
-              const Vector2& image, std::uint16_t a, std::uint16_t b);
+bool IsHidden(const FrontTriangles& front, const Vector3& ray, const Vector2& image, std::uint16_t face);
 
 // The triangles that face the camera at T_camera_model.
 void FindFrontTriangles(const RectifiedCamera& camera, const ModelView& model, const Pose& T_camera_model,

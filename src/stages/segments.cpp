@@ -309,8 +309,9 @@ void JoinCollinear(const SegmentParams& params, FixedVector<Segment2, kMaxSegmen
 void FindSegments(const SegmentParams& params, EdgeImage& edges, SegmentScratch& scratch, Segments& out) {
   Collector collector;
   ChainWalker walker(edges, params.min_cosine);
+  SortRidges(edges);
   for (std::uint32_t k = 0; k < edges.ridge_count; ++k) {
-    const std::uint32_t seed = edges.ridge_pixels[k];
+    const std::uint32_t seed = edges.by_magnitude[k];
     if (edges.ridge[seed] == 0) continue;
     const std::size_t count = walker.Walk(seed, scratch.chain);
     if (static_cast<float>(count) < 0.7F * params.min_length_px) continue;

@@ -91,7 +91,7 @@ class Sampler {
     if (!(-along > params_.min_cosine * ray.norm())) return false;
     if (model_.convex) return true;
     const Vector3 point = eye_ + (plane.offset_m - normal.dot(eye_)) / along * ray;
-    return !IsHidden(model_.view, front_, eye_, point, p, face, face);
+    return !IsHidden(front_, point - eye_, p, face);
   }
 
   [[nodiscard]] bool IsNearEdge(const Vector2& p) const {
