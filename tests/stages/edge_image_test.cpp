@@ -175,9 +175,8 @@ TEST(RidgeFinding, OverflowKeepsTheStrongest) {
   EXPECT_TRUE(std::is_sorted(rows.begin(), rows.end()));
   // In steps of half a grey level per pixel, those of one step in the order of rows.
   std::vector<std::uint32_t> expected = rows;
-  std::stable_sort(expected.begin(), expected.end(), [&](std::uint32_t p, std::uint32_t q) {
-    return e.magnitude[p] / 16 > e.magnitude[q] / 16;
-  });
+  std::stable_sort(expected.begin(), expected.end(),
+                   [&](std::uint32_t p, std::uint32_t q) { return e.magnitude[p] / 16 > e.magnitude[q] / 16; });
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), e.by_magnitude.begin()));
   EXPECT_LE(strongest_unmarked, e.magnitude[expected.back()] + 16);
 }
