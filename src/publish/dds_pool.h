@@ -9,12 +9,13 @@
 
 namespace wirepose {
 
-// What the configuration may choose, and the default. 1 MiB serves a dozen peers; every participant, reader and writer
-// in the domain costs some (docs/dds.md). The array is part of the program; what is not chosen of it costs no memory.
+// What the configuration may choose, and the default. 2 MiB serves twenty peers, also when they all arrive at once on a
+// busy machine; every participant, reader and writer in the domain costs some (docs/dds.md). The array is part of the
+// program; what is not chosen of it costs no memory.
 inline constexpr std::size_t kMaxDdsPoolBytes = std::size_t{8} << 20;
 inline constexpr std::size_t kMinDdsPoolBytes = std::size_t{256} << 10;
-inline constexpr std::size_t kDefaultDdsPoolBytes = std::size_t{1} << 20;
-inline constexpr std::size_t kDefaultSecuredDdsPoolBytes = std::size_t{2} << 20;
+inline constexpr std::size_t kDefaultDdsPoolBytes = std::size_t{2} << 20;
+inline constexpr std::size_t kDefaultSecuredDdsPoolBytes = std::size_t{4} << 20;
 
 // Sets how much of the array may be used, kMinDdsPoolBytes to kMaxDdsPoolBytes. Has an effect only before the first use
 // of DDS in the process: returns false afterwards.
