@@ -50,6 +50,7 @@ inline constexpr std::size_t kMaxLineSetEdges = 48;  // longest edges, the only 
 inline constexpr std::size_t kMaxModelLineSets = 2 * kMaxLineSetEdges;  // one parallel, one intersecting per base line
 inline constexpr std::size_t kMaxModelSetMembers = kMaxLineSetEdges * (kMaxLineSetEdges - 1);
 inline constexpr std::size_t kMaxModelSymmetries = 24;  // rotations of a cube, identity included
+inline constexpr std::size_t kMaxModelFeet = 24;        // faces that an object can stand on, the largest ones
 inline constexpr std::size_t kMaxNearTurns = 3;         // turns that nearly are symmetries; a detection tries each
 inline constexpr std::size_t kMaxModelAspects = 162;    // directions of a twice subdivided icosahedron
 inline constexpr std::size_t kMaxModelName = 32;        // bytes, zero-terminated

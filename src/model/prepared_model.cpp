@@ -36,16 +36,44 @@ void MarkRepresentatives(PreparedModel& model) {
   }
 }
 
-// Every vertex lies behind every face.
-bool IsConvex(const ModelView& view) {
+// Every vertex lies behind the face.
+bool IsOnHull(const ModelView& view, const ModelFace& face) {
   const float tolerance = 0.002F * view.diameter_m;
-  for (const ModelFace& face : view.faces) {
-    const Vector3 normal(face.normal[0], face.normal[1], face.normal[2]);
-    for (std::size_t v = 0; v < view.vertices.size(); ++v) {
-      if (normal.dot(view.VertexPosition(v)) > face.offset_m + tolerance) return false;
-    }
+  const Vector3 normal(face.normal[0], face.normal[1], face.normal[2]);
+  for (std::size_t v = 0; v < view.vertices.size(); ++v) {
+    if (normal.dot(view.VertexPosition(v)) > face.offset_m + tolerance) return false;
   }
   return true;
+}
+
+bool IsConvex(const ModelView& view) {
+  return std::all_of(view.faces.begin(), view.faces.end(), [&](const ModelFace& f) { return IsOnHull(view, f); });
+}
+
+// Mean of the corners of a face's triangles.
+Vector3 CentreOf(const ModelView& view, const ModelFace& face) {
+  Vector3 sum = Vector3::Zero();
+  for (const ModelTriangle& triangle : view.triangles.subspan(face.first_triangle, face.triangle_count)) {
+    for (const std::uint16_t v : triangle.vertex) sum += view.VertexPosition(v);
+  }
+  return sum / (3 * static_cast<float>(std::max<std::uint16_t>(face.triangle_count, 1)));
+}
+
+// The largest ones, by falling area.
+void FindFeet(PreparedModel& model) {
+  const auto& faces = model.view.faces;
+  std::array<std::uint16_t, kMaxModelFaces> order;
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (IsOnHull(model.view, faces[f])) order[count++] = static_cast<std::uint16_t>(f);
+  }
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(count);
+  std::sort(order.begin(), end, [&](std::uint16_t f, std::uint16_t g) {
+    return faces[f].area_m2 != faces[g].area_m2 ? faces[f].area_m2 > faces[g].area_m2 : f < g;
+  });
+  model.feet.clear();
+  for (auto f = order.begin(); f != end && !model.feet.full(); ++f)
+    model.feet.push_back({*f, CentreOf(model.view, faces[*f])});
 }
 
 constexpr int kCells = PreparedModel::kCells;
@@ -89,44 +117,41 @@ void IndexAspects(PreparedModel& model) {
   }
 }
 
-PreparedMember PrepareMember(const PreparedModel& model, const PreparedEdge& base, const ModelSetMember& member) {
-  const PreparedEdge& other = model.edges[member.edge];
-  PreparedMember out{member.distance_m, member.angle_rad, member.farthest_end_m, other.length_m, member.edge};
+// The end of the base edge at which the other edge meets it: 0 a, 1 b; 2: nowhere.
+std::uint8_t SharedEnd(const PreparedModel& model, const PreparedEdge& base, const PreparedEdge& other) {
   const float limit = 0.02F * model.view.diameter_m;
-  for (std::uint8_t i = 0; i < 2; ++i) {
-    for (std::uint8_t j = 0; j < 2; ++j) {
-      if (((i == 0 ? base.a : base.b) - (j == 0 ? other.a : other.b)).squaredNorm() >= limit * limit) continue;
-      out.base_end = i;
-      out.other_end = j;
-    }
-  }
-  return out;
+  const auto near = [&](const Vector3& p, const Vector3& q) { return (p - q).squaredNorm() < limit * limit; };
+  if (near(base.b, other.a) || near(base.b, other.b)) return 1;
+  return near(base.a, other.a) || near(base.a, other.b) ? 0 : 2;
 }
 
-// Sets of representative base edges, members at a corner first, each part by rising distance.
+void AddMember(const PreparedModel& model, const ModelSetMember& member, std::uint8_t base_end, PreparedMembers& out) {
+  const std::size_t i = out.count++;
+  out.distance_m[i] = member.distance_m;
+  out.angle_rad[i] = member.angle_rad;
+  out.farthest_end_m[i] = member.farthest_end_m;
+  out.other_length_m[i] = model.edges[member.edge].length_m;
+  out.other_edge[i] = member.edge;
+  out.base_end[i] = base_end;
+}
+
+// Sets of representative base edges, members at a corner first.
 void PrepareSets(PreparedModel& model) {
   model.sets.clear();
-  model.members.clear();
+  model.members.count = 0;
   for (const ModelLineSet& set : model.view.line_sets) {
     const PreparedEdge& base = model.edges[set.base_edge];
     if (!base.representative) continue;
-    const std::size_t first = model.members.size();
-    for (const ModelSetMember& member : model.view.set_members.subspan(set.first_member, set.member_count)) {
-      model.members.push_back(PrepareMember(model, base, member));
-    }
-    const auto begin = model.members.begin() + first;
-    std::sort(begin, model.members.end(), [](const PreparedMember& p, const PreparedMember& q) {
-      if ((p.base_end == 2) != (q.base_end == 2)) return q.base_end == 2;
-      return p.distance_m != q.distance_m ? p.distance_m < q.distance_m : p.other_edge < q.other_edge;
-    });
-    const auto corner_end =
-        std::find_if(begin, model.members.end(), [](const PreparedMember& m) { return m.base_end == 2; });
-    PreparedSet prepared{set.kind, set.base_edge, static_cast<std::uint16_t>(first),
-                         static_cast<std::uint16_t>(corner_end - model.members.begin()),
-                         static_cast<std::uint16_t>(model.members.size())};
-    for (auto m = begin; m != model.members.end(); ++m) {
-      prepared.max_distance_m = std::max(prepared.max_distance_m, m->distance_m);
-      prepared.max_farthest_end_m = std::max(prepared.max_farthest_end_m, m->farthest_end_m);
+    PreparedSet prepared{set.kind, set.base_edge, static_cast<std::uint16_t>(model.members.count)};
+    for (const bool corner : {true, false}) {
+      for (const ModelSetMember& member : model.view.set_members.subspan(set.first_member, set.member_count)) {
+        const std::uint8_t end = SharedEnd(model, base, model.edges[member.edge]);
+        if ((end != 2) != corner) continue;
+        AddMember(model, member, end, model.members);
+        prepared.max_distance_m = std::max(prepared.max_distance_m, member.distance_m);
+        prepared.max_farthest_end_m = std::max(prepared.max_farthest_end_m, member.farthest_end_m);
+      }
+      (corner ? prepared.corner_end : prepared.end) = static_cast<std::uint16_t>(model.members.count);
     }
     model.sets.push_back(prepared);
   }
@@ -175,6 +200,7 @@ void PrepareModel(const ModelView& view, PreparedModel& out) {
                       (i & 4U) != 0 ? view.box_max_m.z() : view.box_min_m.z()};
   }
   out.convex = IsConvex(view);
+  FindFeet(out);
   MarkRepresentatives(out);
   PrepareSets(out);
   IndexAspects(out);

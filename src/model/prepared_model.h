@@ -3,6 +3,7 @@
 #define WIREPOSE_MODEL_PREPARED_MODEL_H_
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "base/fixed_vector.h"
@@ -22,22 +23,40 @@ using EdgeBits = std::array<std::uint32_t, kMaxModelEdges / 32>;
 
 inline bool HasEdge(const EdgeBits& bits, std::size_t edge) { return ((bits[edge / 32] >> (edge % 32)) & 1U) != 0; }
 
-// One member of a model line set, as matching reads it.
-struct PreparedMember {
-  float distance_m = 0, angle_rad = 0, farthest_end_m = 0;
-  float other_length_m = 0;
-  std::uint16_t other_edge = 0;
-  // Which ends of base and other edge share a corner: 0 a, 1 b; 2: none.
-  std::uint8_t base_end = 2, other_end = 2;
+// The first edge from `edge` on that is set; kMaxModelEdges when none is.
+inline std::size_t NextEdge(const EdgeBits& bits, std::size_t edge) {
+  for (std::size_t word = edge / 32, skip = edge % 32; word < bits.size(); ++word, skip = 0) {
+    const std::uint32_t rest = bits[word] >> skip;
+    if (rest != 0) return word * 32 + skip + static_cast<std::size_t>(std::countr_zero(rest));
+  }
+  return kMaxModelEdges;
+}
+
+// The members of all line sets, number by number: what is compared with a pair of image lines, in vectors.
+struct PreparedMembers {
+  static constexpr std::size_t kLanes = 8;  // of a vector: whole ones may be read anywhere
+  static constexpr std::size_t kCapacity = kMaxModelSetMembers + kLanes;
+  template <typename T>
+  using Column = std::array<T, kCapacity>;
+
+  Column<float> distance_m{}, angle_rad{}, farthest_end_m{}, other_length_m{};
+  Column<std::uint16_t> other_edge;
+  Column<std::uint8_t> base_end;  // of the base edge at which the other one meets it: 0 a, 1 b; 2: none
+  std::size_t count = 0;
 };
 
-// A line set with a representative base edge; members [first, corner_end) share a corner with the base edge and all
-// members [first, end) follow each other by rising distance (the corner ones first, whose distance is zero).
+// A line set with a representative base edge; members [first, corner_end) share a corner with the base edge.
 struct PreparedSet {
   LineSetKind kind = LineSetKind::kParallel;
   std::uint16_t base_edge = 0;
   std::uint16_t first = 0, corner_end = 0, end = 0;
   float max_distance_m = 0, max_farthest_end_m = 0;  // of all members
+};
+
+// A face that all of the object lies behind: it can stand on it.
+struct PreparedFoot {
+  std::uint16_t face = 0;
+  Vector3 centre = Vector3::Zero();  // of its corners, m
 };
 
 struct PreparedModel {
@@ -47,9 +66,10 @@ struct PreparedModel {
   // Symmetries as poses, the identity first.
   FixedVector<Pose, kMaxModelSymmetries> symmetries;
   FixedVector<PreparedSet, kMaxModelLineSets> sets;
-  FixedVector<PreparedMember, kMaxModelSetMembers> members;
-  std::array<Vector3, 8> corners;  // of the bounding box
-  bool convex = false;             // no face can hide an edge of another one
+  PreparedMembers members;
+  std::array<Vector3, 8> corners;                 // of the bounding box
+  FixedVector<PreparedFoot, kMaxModelFeet> feet;  // by falling area
+  bool convex = false;                            // no face can hide an edge of another one
   // Nearest aspect of a direction, by cube face and cell.
   static constexpr int kCells = 12;
   std::array<std::uint8_t, 6 * kCells * kCells> nearest_aspect{};

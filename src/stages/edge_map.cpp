@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/simd.h"
+
 namespace wirepose {
 namespace {
 
@@ -11,6 +13,13 @@ std::uint16_t DirectionAndNeighbours(int direction) {
     return static_cast<std::uint16_t>(1U << ((d + EdgeMap::kDirections) % EdgeMap::kDirections));
   };
   return static_cast<std::uint16_t>(rotate(direction - 1) | rotate(direction) | rotate(direction + 1));
+}
+
+// Of every second one of `count` cells.
+WIREPOSE_VECTOR_KERNEL std::uint32_t CountBits(const std::uint16_t* cells, int count) {
+  std::uint32_t bits = 0;
+  for (int i = 0; i < count; ++i) bits += static_cast<std::uint32_t>(std::popcount(cells[2 * i]));
+  return bits;
 }
 
 }  // namespace
@@ -43,13 +52,11 @@ void BuildEdgeMap(const EdgeImage& edges, EdgeMap& out) {
       }
     }
   }
-  std::uint32_t set = 0, count = 0;
-  for (int j = 2; j < rows - 2; j += 2) {
-    for (int i = 2; i < columns - 2; i += 2) {
-      set += static_cast<std::uint32_t>(std::popcount(out.directions[static_cast<std::size_t>(j * kStride + i)]));
-      count += EdgeMap::kDirections;
-    }
-  }
+  const int counted_columns = std::max(0, columns - 3) / 2, counted_rows = std::max(0, rows - 3) / 2;
+  std::uint32_t set = 0;
+  for (int j = 0; j < counted_rows; ++j)
+    set += CountBits(out.directions.data() + (2 * j + 2) * kStride + 2, counted_columns);
+  const auto count = static_cast<std::uint32_t>(counted_rows * counted_columns * EdgeMap::kDirections);
   out.background = count > 0 ? static_cast<float>(set) / static_cast<float>(count) : 0.0F;
 }
 

@@ -6,21 +6,23 @@ namespace wirepose {
 namespace {
 
 // Whole vectors of lanes; those beyond the profile's end are computed and not used.
-constexpr std::size_t kLanes = (2 * EdgeProfile::kMaxRange + 5 + 7) / 8 * 8;
+constexpr std::size_t kLanes = 8;
+constexpr std::size_t WholeVectors(std::size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
+constexpr std::size_t kMaxCount = WholeVectors(2 * EdgeProfile::kMaxRange + 5);
 
 struct Places {
-  std::array<std::int32_t, kLanes> index;         // of the upper left pixel
-  std::array<float, kLanes> fx, fy;               // from there
-  std::array<std::uint32_t, kLanes> top, bottom;  // two pixels each, the left one in the lower half
+  std::array<std::int32_t, kMaxCount> index;         // of the upper left pixel
+  std::array<float, kMaxCount> fx, fy;               // from there
+  std::array<std::uint32_t, kMaxCount> top, bottom;  // two pixels each, the left one in the lower half
 };
 
 std::uint32_t Both(const std::int16_t* p) {
   return static_cast<std::uint16_t>(p[0]) | static_cast<std::uint32_t>(static_cast<std::uint16_t>(p[1])) << 16;
 }
 
-WIREPOSE_VECTOR_KERNEL void Place(const Vector2& start, const Vector2& step, Places& out) {
+WIREPOSE_VECTOR_KERNEL void Place(const Vector2& start, const Vector2& step, std::size_t lanes, Places& out) {
   const float x0 = start.x(), y0 = start.y(), dx = step.x(), dy = step.y();
-  for (std::size_t k = 0; k < kLanes; ++k) {
+  for (std::size_t k = 0; k < lanes; ++k) {
     const auto n = static_cast<float>(static_cast<std::int32_t>(k));
     const float x = x0 + n * dx, y = y0 + n * dy;
     const auto xi = static_cast<std::int32_t>(x), yi = static_cast<std::int32_t>(y);
@@ -30,8 +32,10 @@ WIREPOSE_VECTOR_KERNEL void Place(const Vector2& start, const Vector2& step, Pla
   }
 }
 
-WIREPOSE_VECTOR_KERNEL void Blend(const Places& places, float* value) {
-  for (std::size_t k = 0; k < kLanes; ++k) {
+// Bilinear values at the places, and their central differences.
+WIREPOSE_VECTOR_KERNEL void Differentiate(const Places& places, std::size_t lanes, float* __restrict gradient) {
+  std::array<float, kMaxCount> value;
+  for (std::size_t k = 0; k < lanes; ++k) {
     const auto left = [](std::uint32_t both) { return static_cast<float>(static_cast<std::int16_t>(both & 0xFFFF)); };
     const auto right = [](std::uint32_t both) { return static_cast<float>(static_cast<std::int32_t>(both) >> 16); };
     const float t0 = left(places.top[k]), t1 = right(places.top[k]);
@@ -39,6 +43,8 @@ WIREPOSE_VECTOR_KERNEL void Blend(const Places& places, float* value) {
     const float upper = t0 + places.fx[k] * (t1 - t0), lower = b0 + places.fx[k] * (b1 - b0);
     value[k] = upper + places.fy[k] * (lower - upper);
   }
+  gradient[0] = gradient[lanes - 1] = 0;
+  for (std::size_t k = 1; k < lanes - 1; ++k) gradient[k] = value[k + 1] - value[k - 1];
 }
 
 }  // namespace
@@ -53,16 +59,17 @@ bool EdgeProfile::Read(const SmoothPlane& plane, int width, int height, const Ve
         p.y() + ry < static_cast<float>(height - 1))) {
     return false;
   }
+  const std::size_t lanes = WholeVectors(static_cast<std::size_t>(count_));
   Places places;
-  Place({p.x() - reach * normal.x(), p.y() - reach * normal.y()}, normal, places);
+  Place({p.x() - reach * normal.x(), p.y() - reach * normal.y()}, normal, lanes, places);
   for (std::size_t k = 0; k < static_cast<std::size_t>(count_); ++k) {
     const std::int16_t* top = plane.data() + places.index[k];
     const std::int16_t* bottom = top + kMaxImageWidth;
     places.top[k] = Both(top);
     places.bottom[k] = Both(bottom);
   }
-  for (auto k = static_cast<std::size_t>(count_); k < kLanes; ++k) places.top[k] = places.bottom[k] = 0;
-  Blend(places, value_.data());
+  for (auto k = static_cast<std::size_t>(count_); k < lanes; ++k) places.top[k] = places.bottom[k] = 0;
+  Differentiate(places, lanes, gradient_.data());
   return true;
 }
 

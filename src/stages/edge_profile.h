@@ -43,11 +43,9 @@ class EdgeProfile {
   [[nodiscard]] float GradientAt(int offset) const { return Gradient(middle_ + offset); }
 
  private:
-  [[nodiscard]] float Gradient(int k) const {
-    return value_[static_cast<std::size_t>(k + 1)] - value_[static_cast<std::size_t>(k - 1)];
-  }
+  [[nodiscard]] float Gradient(int k) const { return gradient_[static_cast<std::size_t>(k)]; }
 
-  std::array<float, (2 * kMaxRange + 5 + 7) / 8 * 8> value_;  // whole vectors of lanes
+  std::array<float, (2 * kMaxRange + 5 + 7) / 8 * 8> gradient_;  // whole vectors of lanes
   int count_ = 0, middle_ = 0;
 };
 

@@ -44,7 +44,11 @@ EvidenceTerms TermsOf(const Evidence& evidence) {
           s.misfit,
           evidence.disparity_px,
           evidence.rms_px,
-          evidence.uncertainty};
+          evidence.uncertainty,
+          evidence.ground.stands,
+          evidence.ground.hangs,
+          evidence.ground.sunk,
+          evidence.ground.gap};
 }
 
 const std::array<const char*, kEvidenceTerms>& EvidenceTermNames() {
@@ -86,7 +90,11 @@ const std::array<const char*, kEvidenceTerms>& EvidenceTermNames() {
                                                                      "misfit",
                                                                      "disparity_px",
                                                                      "rms_px",
-                                                                     "uncertainty"};
+                                                                     "uncertainty",
+                                                                     "stands",
+                                                                     "hangs",
+                                                                     "sunk",
+                                                                     "gap"};
   return kNames;
 }
 

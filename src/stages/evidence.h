@@ -7,6 +7,7 @@
 
 #include "stages/disparity_map.h"
 #include "stages/edge_map.h"
+#include "stages/ground_evidence.h"
 #include "stages/line_evidence.h"
 #include "stages/occlusion.h"
 #include "stages/sample_edges.h"
@@ -19,6 +20,7 @@ struct VerifyParams {
   OcclusionParams occlusion;
   SurfaceEvidenceParams surface;
   LineEvidenceParams lines;
+  GroundEvidenceParams ground;
   int piece_samples = 5;           // neighbouring samples of an edge whose profiles are averaged
   float noise_floor = 0.6F;        // grey levels per pixel that an averaged profile may show of nothing
   float max_offset_px = 2.2F;      // of a supporting image edge from the model edge, in each image ...
@@ -63,9 +65,10 @@ struct Evidence {
   float disparity_px = 0;   // of the object's edges, mean: how well depth can be told
   float rms_px = 0;         // what the refinement left
   float uncertainty = 0;    // of the position by what the visible edges determine, over the diameter
+  GroundEvidence ground;    // of the disparity map, around what the object may stand on
 };
 
-inline constexpr std::size_t kEvidenceTerms = 39;
+inline constexpr std::size_t kEvidenceTerms = 43;
 using EvidenceTerms = std::array<float, kEvidenceTerms>;
 
 // The terms in a fixed order, as the score reads them, and their names in that order.

@@ -55,22 +55,21 @@ class PairMaker {
       direction_[i] = lines[i].Direction();
       direction_sigma_[i] = DirectionSigma(camera, lines[i]);
       depth_sigma_[i] = DepthSigma(camera, lines[i]);
-      log_angle_[i] = LogAngle(direction_sigma_[i]);
-      log_distance_[i] = LogDistance(depth_sigma_[i]);
+      log_angle_[i] = Log(OfAngle(direction_sigma_[i]));
+      log_distance_[i] = Log(OfDistance(depth_sigma_[i]));
     }
   }
 
-  // No pair of these two lines has a higher quality: the joint sigmas are at least the larger ones.
+  // No pair of these two lines has a higher quality, unless they meet: the joint sigmas are at least the larger ones.
   [[nodiscard]] float QualityBound(std::size_t b, std::size_t o) const {
-    float bound = log_length_[b] + log_length_[o] + params_.junction_quality;
+    float bound = log_length_[b] + log_length_[o] + kRounding;
     if (lines_[o].has_depth)
       bound -= std::max(log_angle_[b], log_angle_[o]) + std::max(log_distance_[b], log_distance_[o]);
     return bound;
   }
 
-  // All but the metric part of the pair; with its quality, which tells whether that part is worth the work. False when
-  // the two lines are not related.
-  bool Rate(std::size_t b, std::size_t o, ImageLinePair& pair) const {
+  // Two lines, and which of their ends meet. True when some do.
+  bool Join(std::size_t b, std::size_t o, ImageLinePair& pair) const {
     const Line3& base = lines_[b];
     const Line3& other = lines_[o];
     pair = {};
@@ -80,22 +79,30 @@ class PairMaker {
     const float reach = std::min(params_.junction_px, 4 + 0.3F * std::min(length_px_[b], length_px_[o]));
     const bool junction = std::sqrt(ends_squared) < reach && ImageSine(image_direction_[b], image_direction_[o]) > 0.2F;
     if (!junction) pair.base_end = pair.other_end = LineEnd::kNone;
+    return junction;
+  }
+
+  // The quality of two joined lines, which tells whether the rest is worth the work. False when they are not related.
+  bool Rate(ImageLinePair& pair) const {
+    const std::size_t b = pair.base, o = pair.other;
+    const bool junction = pair.base_end != LineEnd::kNone;
     pair.quality = log_length_[b] + log_length_[o] + (junction ? params_.junction_quality : 0.0F);
-    if (!other.has_depth) return junction;
+    if (!lines_[o].has_depth) return junction;
     pair.metric = true;
-    pair.farthest_end_m = FarthestEnds(base, other);
+    pair.farthest_end_m = FarthestEnds(lines_[b], lines_[o]);
     if (pair.farthest_end_m > params_.max_reach_m + 3 * (depth_sigma_[b] + depth_sigma_[o])) return false;
     pair.angle_sigma_rad =
         std::sqrt(direction_sigma_[b] * direction_sigma_[b] + direction_sigma_[o] * direction_sigma_[o]);
     pair.distance_sigma_m = std::sqrt(depth_sigma_[b] * depth_sigma_[b] + depth_sigma_[o] * depth_sigma_[o]);
     // Normalisation of the two Gaussians that V is compared with, relative to a rad of 1 and a distance of 1 cm.
-    pair.quality -= LogAngle(pair.angle_sigma_rad) + LogDistance(pair.distance_sigma_m);
+    pair.quality -= Log(OfAngle(pair.angle_sigma_rad) * OfDistance(pair.distance_sigma_m));
     return true;
   }
 
   // The whole pair of two lines that are related.
   void Make(std::size_t b, std::size_t o, ImageLinePair& pair) const {
-    const bool related = Rate(b, o, pair);
+    Join(b, o, pair);
+    const bool related = Rate(pair);
     Check(related);  // Rate said so when the pair was ranked
     if (pair.metric) Measure(b, o, pair);
   }
@@ -113,8 +120,10 @@ class PairMaker {
     pair.distance_m = DistanceOfLines(lines_[b], lines_[o], u, v, sine);
   }
 
-  static float LogAngle(float sigma_rad) { return Log(sigma_rad + 0.02F); }
-  static float LogDistance(float sigma_m) { return Log((sigma_m + 0.003F) / 0.01F); }
+  static constexpr float kRounding = 1e-3F;  // far more than what a bound may be too low by
+
+  static float OfAngle(float sigma_rad) { return sigma_rad + 0.02F; }
+  static float OfDistance(float sigma_m) { return (sigma_m + 0.003F) / 0.01F; }
 
   static float Angle(float sine, float cosine) {
     const bool steep = sine > cosine;
@@ -171,9 +180,12 @@ void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, co
     for (std::size_t o = 0; o < lines.size(); ++o) {
       // Of two lines with depth the longer one, which comes first, is the base: model sets hold both orders.
       if (o == b || (o < b && lines[o].has_depth)) continue;
-      if (!out.kept.WouldKeep({maker.QualityBound(b, o) + 1e-3F, 0, 0})) continue;
+      // Most pairs are too weak to be kept: the sooner that is known, the better.
+      const float bound = maker.QualityBound(b, o);
+      if (!out.kept.WouldKeep({bound + params.junction_quality, 0, 0})) continue;
       ImageLinePair pair;
-      if (!maker.Rate(b, o, pair)) continue;
+      if (!maker.Join(b, o, pair) && !out.kept.WouldKeep({bound, 0, 0})) continue;
+      if (!maker.Rate(pair)) continue;
       out.kept.Push({pair.quality, pair.base, pair.other});
     }
   }

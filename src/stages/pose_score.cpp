@@ -45,9 +45,9 @@ bool PoseScorer::Score(const Matrix3& R, const Vector3& t, const EdgeBits& visib
   FixedVector<Sampled, kMaxModelEdges> sampled;
   Support left, right;
   int total = 0;
-  for (std::size_t e = 0; e < model_.edges.size(); ++e) {
+  for (std::size_t e = NextEdge(visible, 0); e < model_.edges.size(); e = NextEdge(visible, e + 1)) {
     Projected p;
-    if (!HasEdge(visible, e) || !Project(model_.edges[e], R, t, p)) continue;
+    if (!Project(model_.edges[e], R, t, p)) continue;
     const int n = std::clamp(static_cast<int>((p.b - p.a).norm() / params_.sample_step_px), 1, 16);
     total += n;
     AddSupport(scene_.left, left_gain_, p.a, p.b, n, left);

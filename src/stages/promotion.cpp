@@ -79,9 +79,9 @@ class Promoter {
     set.line_count = set.face_count = 0;
     const EdgeBits visible = Visible(set);
     std::array<bool, kMaxModelFaces> covered{};
-    for (std::size_t e = 0; e < model_.edges.size(); ++e) {
+    for (std::size_t e = NextEdge(visible, 0); e < model_.edges.size(); e = NextEdge(visible, e + 1)) {
       PoseScorer::Projected p;
-      if (!HasEdge(visible, e) || !scorer_.Project(model_.edges[e], set.R, set.t, p)) continue;
+      if (!scorer_.Project(model_.edges[e], set.R, set.t, p)) continue;
       if (!GatherEdge(e, p, max_offset)) continue;
       ++set.line_count;
       for (const std::uint16_t face : model_.view.edges[e].face) {

@@ -26,6 +26,7 @@ void GatherEvidence(const VerifyParams& params, const VerifyInput& in, const Pre
   out.edges.crossed = overrun.crossed;
   GatherLineEvidence(params.lines, in.camera, in.segments, model, T, scratch.samples, scratch.surface, out.lines);
   GatherSurfaceEvidence(params.surface, in.disparity, scratch.surface, out.surface);
+  GatherGroundEvidence(params.ground, in.camera, in.disparity, model, T, scratch.surface, out.ground);
   out.disparity_px = MeanDisparity(scratch.samples);
   out.rms_px = pose.rms_px;
   out.uncertainty = pose.position_sigma_m / model.view.diameter_m;

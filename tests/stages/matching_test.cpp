@@ -2,6 +2,9 @@
 // be found.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <set>
+
 #include "model_test_support.h"
 #include "stages/correspondences.h"
 #include "stages/hypotheses.h"
@@ -99,6 +102,107 @@ TEST(CorrespondenceFinding, TrueEdgesAreProposed) {
     EXPECT_GT(asked, Cases(20) * 5);
     EXPECT_GE(found, 0.95 * asked) << name;
   }
+}
+
+// Image pair, base edge, other edge, base flipped.
+using Match4 = std::array<int, 4>;
+
+// Every correspondence by the rules, from the model file's own line sets; what rounding may decide either way goes into
+// `open`.
+class BruteForce {
+ public:
+  BruteForce(const PreparedModel& model, const IdealScene& scene, const ImageLineSets& sets)
+      : model_(model), scene_(scene), sets_(sets) {
+    for (const ModelLineSet& set : model.view.line_sets) {
+      if (!model.edges[set.base_edge].representative) continue;
+      for (const ModelSetMember& member : model.view.set_members.subspan(set.first_member, set.member_count)) {
+        for (std::size_t p = 0; p < sets.pairs.size(); ++p) Try(p, set, member);
+      }
+    }
+  }
+  std::set<Match4> sure, open;
+
+ private:
+  void Try(std::size_t p, const ModelLineSet& set, const ModelSetMember& member) {
+    const ImageLinePair& pair = sets_.pairs[p];
+    if (pair.kind != set.kind) return;
+    const PreparedEdge &base = model_.edges[set.base_edge], &other = model_.edges[member.edge];
+    margin_ = 1e9;
+    Fits(scene_.lines[pair.base], base, params_.min_cover);
+    const int end = SharedEnd(base, other);
+    const bool corner = end != 2 && pair.base_end != LineEnd::kNone;
+    if (pair.metric) {
+      const double slack = Number(params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m);
+      const double longest = 1 + Number(params_.length_tolerance), shortest = 1 - Number(params_.length_tolerance);
+      Fits(scene_.lines[pair.other], other, params_.min_other_cover);
+      AtLeast(Number(member.distance_m) * longest + slack, Number(pair.distance_m));
+      AtLeast(Number(pair.distance_m) + slack, Number(member.distance_m) * shortest);
+      AtLeast(Number(params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad),
+              std::abs(Number(pair.angle_rad) - Number(member.angle_rad)));
+      AtLeast(Number(member.farthest_end_m) * longest + slack, Number(pair.farthest_end_m));
+    } else if (!corner) {
+      return;
+    }
+    if (margin_ < -1e-5) return;
+    for (int flipped = 0; flipped < 2; ++flipped) {
+      if (corner && flipped != (end == static_cast<int>(pair.base_end) ? 0 : 1)) continue;
+      (margin_ > 1e-5 ? sure : open).insert({static_cast<int>(p), set.base_edge, member.edge, flipped});
+    }
+  }
+
+  static double Number(float value) { return static_cast<double>(value); }
+  void AtLeast(double more, double less) { margin_ = std::min(margin_, more - less); }
+
+  void Fits(const Line3& line, const PreparedEdge& edge, float min_cover) {
+    const double length = Number(line.Length()), edge_length = Number(edge.length_m);
+    const double metres_per_px = 0.5 * Number(line.a.z() + line.b.z()) / scene_.camera.f;
+    const double slack = Number(params_.end_tolerance_m) + 2 * metres_per_px +
+                         Number(params_.sigmas * DirectionSigma(scene_.camera, line)) * length;
+    AtLeast(edge_length * (1 + Number(params_.length_tolerance)) + slack, length);
+    AtLeast(length + slack, Number(min_cover) * edge_length);
+  }
+
+  [[nodiscard]] int SharedEnd(const PreparedEdge& base, const PreparedEdge& other) const {
+    int shared = 2;
+    for (int end = 0; end < 2; ++end) {
+      for (const Vector3& q : {other.a, other.b}) {
+        if (((end == 0 ? base.a : base.b) - q).norm() < 0.02F * model_.view.diameter_m) shared = end;
+      }
+    }
+    return shared;
+  }
+
+  const CorrespondenceParams params_;
+  const PreparedModel& model_;
+  const IdealScene& scene_;
+  const ImageLineSets& sets_;
+  double margin_ = 0;
+};
+
+// As long as none is dropped, the list is what a search through all combinations finds.
+TEST(CorrespondenceFinding, AgreesWithBruteForce) {
+  Random random(6);
+  std::size_t compared = 0;
+  for (const char* name : {"parcel_box", "book", "juice_dispenser"}) {
+    const TestModel model = testing::Load(name);
+    const auto matching = std::make_unique<Matching>();
+    for (int k = 0; k < Cases(20); ++k) {
+      const auto scene = testing::MakeScene(
+          random, *model, testing::AnyView(random, *model, testing::TestCamera(), 250), {.clutter = k % 3 * 3});
+      Match(*model, *scene, *matching);
+      if (matching->pairs.dropped() > 0) continue;
+      const BruteForce expected(*model, *scene, matching->sets);
+      std::set<Match4> found;
+      for (const CorrespondingPair& c : matching->pairs.items())
+        found.insert({c.image_pair, c.base_edge, c.other_edge, c.base_flipped});
+      EXPECT_EQ(found.size(), matching->pairs.items().size()) << "something is listed twice";
+      for (const Match4& match : expected.sure) EXPECT_TRUE(found.contains(match)) << name << " " << match[1];
+      for (const Match4& match : found)
+        EXPECT_TRUE(expected.sure.contains(match) || expected.open.contains(match)) << name << " " << match[1];
+      compared += expected.sure.size();
+    }
+  }
+  EXPECT_GT(compared, static_cast<std::size_t>(Cases(20)) * 100);
 }
 
 // A cuboid of three different sides has three kinds of edges; the other nine would only repeat

@@ -77,10 +77,12 @@ TEST(Score, NeverFallsWithEvidence) {
       ASSERT_TRUE(rises ? b >= a - 1e-5F : b <= a + 1e-5F) << name << " " << a << " " << b;
     }
   };
-  for (const char* name : {"visible_px", "inside", "support", "sharp", "full_edges", "distinct", "on", "drop"}) {
+  for (const char* name :
+       {"visible_px", "inside", "support", "sharp", "full_edges", "distinct", "on", "drop", "stands"}) {
     check(name, true);
   }
-  for (const char* name : {"chance", "overrun", "crossed", "hidden", "through", "rms_px", "uncertainty"})
+  for (const char* name :
+       {"chance", "overrun", "crossed", "hidden", "through", "rms_px", "uncertainty", "hangs", "gap"})
     check(name, false);
 }
 

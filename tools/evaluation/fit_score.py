@@ -21,10 +21,11 @@ BINS = 24
 RIDGE = 3.0
 RISING = {'visible_px', 'inside', 'support', 'sharp', 'sharp_of_support', 'full_edges', 'weakest_edge', 'distinct',
           'clear', 'dimmest_edge', 'outline', 'outline_distinct', 'inner_distinct', 'ends', 'corners',
-          'weakest_face', 'on', 'drop'}
+          'weakest_face', 'on', 'drop', 'stands'}
 FALLING = {'chance', 'spread_px', 'parallax_px', 'weak_edges', 'overrun', 'crossed', 'crossing', 'crossings',
-           'inner_crossings', 'beyond', 'across', 'hidden', 'through', 'level', 'misfit', 'rms_px', 'uncertainty'}
-FIRST, LAST = 'visible_px', 'uncertainty'  # columns of the terms, in the order of EvidenceTerms
+           'inner_crossings', 'beyond', 'across', 'hidden', 'through', 'level', 'misfit', 'rms_px', 'uncertainty', 'hangs',
+           'gap'}
+FIRST, LAST = 'visible_px', 'gap'  # columns of the terms, in the order of EvidenceTerms
 TABLE = pathlib.Path(__file__).resolve().parents[2] / 'src/stages/score_table.cpp'
 
 
