@@ -264,6 +264,7 @@ void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const 
   // Aligned poses meet again: keep the best of each.
   const float aligned_tolerance = params.aligned_duplicate_share * model.view.diameter_m;
   for (const CorrespondingSet& set : best.Sorted()) {
+    if (!out.empty() && set.rank < params.min_rank_share * out[0].rank) break;
     bool duplicate = false;
     for (const CorrespondingSet& k : out)
       duplicate = duplicate || IsSamePose(model, set.R, set.t, k.R, k.t, aligned_tolerance);

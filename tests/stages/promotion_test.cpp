@@ -101,6 +101,7 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
   const TestModel model = testing::Load("parcel_box");
   const auto sets = std::make_unique<CorrespondingSets>();
   int first = 0;
+  std::size_t cut = 0;
   const int count = Cases(20);
   for (int k = 0; k < count; ++k) {
     const Pose T = testing::AnyView(random, *model, testing::TestCamera(), 300);
@@ -119,6 +120,7 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
     for (std::size_t i = 0; i < sets->size(); ++i) {
       const CorrespondingSet& set = (*sets)[i];
       EXPECT_LE(set.rank, (*sets)[0].rank);
+      EXPECT_GE(set.rank, PromotionParams{}.min_rank_share * (*sets)[0].rank);
       EXPECT_LE(set.face_count, 3);
       EXPECT_LE(set.line_count, 9);
       EXPECT_NEAR(
@@ -128,8 +130,15 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
       for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(Same(*model, PoseOf(set), PoseOf((*sets)[j]), tolerance));
     }
     if (testing::CornerError(*model, PoseOf(sets->front()), T) < 0.02) ++first;
+    // What is cut off is the end of the list.
+    const auto all = std::make_unique<CorrespondingSets>();
+    PromoteSets({.min_rank_share = 0}, scorer, scene->camera, *model, scene->lines, hypotheses, *all);
+    ASSERT_GE(all->size(), sets->size());
+    for (std::size_t i = 0; i < sets->size(); ++i) EXPECT_EQ((*all)[i].rank, (*sets)[i].rank);
+    cut += all->size() - sets->size();
   }
   EXPECT_GE(first, 0.9 * count);
+  EXPECT_GT(cut, 0U);
 }
 
 TEST(Promotion, NoHypothesesNoSets) {
