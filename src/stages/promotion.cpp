@@ -254,6 +254,7 @@ void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const 
   KeepBest<CorrespondingSet, kMaxPromoted, BetterSet> best;
   Promoter promoter(params, scorer, camera, model, lines);
   for (const Hypothesis& h : hypotheses) {
+    if (h.score < params.min_score_share * hypotheses[0].score) break;
     bool duplicate = false;
     for (const Hypothesis* k : distinct) duplicate = duplicate || IsSamePose(model, h.R, h.t, k->R, k->t, tolerance);
     if (duplicate) continue;

@@ -16,7 +16,8 @@ struct PromotionParams {
   float aligned_duplicate_share = 0.08F;  // ... and so are aligned sets: refinement would bring them together
   float line_gain = 2.0F;                 // rank of each line of the set ...
   float face_gain = 3.0F;                 // ... and of each surface it covers, added to the coarse score
-  float min_rank_share = 0.55F;           // of the best set's rank: what ranks lower is hardly ever the object
+  // Of the best hypothesis's score and of the best set's rank: what comes lower is hardly ever the object.
+  float min_score_share = 0.4F, min_rank_share = 0.55F;
 };
 
 // One line of a corresponding set.
@@ -37,12 +38,11 @@ struct CorrespondingSet {
 };
 using CorrespondingSets = FixedVector<CorrespondingSet, kMaxCandidates>;
 
-// Hypotheses that are one pose (up to the model's symmetries) are merged, the rest promoted: every image line that lies
-// along a visible model edge joins the set, and the pose is aligned to the whole set by weighted least squares of the
-// lines' image positions and disparities (eq. 10, in the space where the errors are Gaussian). Sets are ranked by
-// score, lines and surfaces; the best kMaxCandidates that come near the best one are returned, best first. `hypotheses`
-// best first.
-// O(hypotheses^2 + promoted * visible edges * lines).
+// Hypotheses that are one pose (up to the model's symmetries) are merged, those that come near the best one promoted:
+// every image line that lies along a visible model edge joins the set, and the pose is aligned to the whole set by
+// weighted least squares of the lines' image positions and disparities (eq. 10, in the space where the errors are
+// Gaussian). Sets are ranked by score, lines and surfaces; the best kMaxCandidates that come near the best one are
+// returned, best first. `hypotheses` best first. O(hypotheses^2 + promoted * visible edges * lines).
 void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const RectifiedCamera& camera,
                  const PreparedModel& model, const Lines3& lines, std::span<const Hypothesis> hypotheses,
                  CorrespondingSets& out);

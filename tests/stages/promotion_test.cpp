@@ -112,8 +112,8 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
     std::vector<Hypothesis> hypotheses;
     for (int i = 0; i < 10; ++i)
       hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.3, 0.05), static_cast<float>(30 - i)));
-    hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 5));
-    hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 4));
+    hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 14));
+    hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 13));
     PromoteSets({}, scorer, scene->camera, *model, scene->lines, hypotheses, *sets);
     ASSERT_FALSE(sets->empty());
     const double tolerance = static_cast<double>(PromotionParams{}.duplicate_share * model->view.diameter_m);
