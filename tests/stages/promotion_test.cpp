@@ -131,11 +131,20 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
     }
     if (testing::CornerError(*model, PoseOf(sets->front()), T) < 0.02) ++first;
     // What is cut off is the end of the list.
-    const auto all = std::make_unique<CorrespondingSets>();
-    PromoteSets({.min_rank_share = 0}, scorer, scene->camera, *model, scene->lines, hypotheses, *all);
-    ASSERT_GE(all->size(), sets->size());
-    for (std::size_t i = 0; i < sets->size(); ++i) EXPECT_EQ((*all)[i].rank, (*sets)[i].rank);
-    cut += all->size() - sets->size();
+    const auto all = std::make_unique<CorrespondingSets>(), near_best = std::make_unique<CorrespondingSets>();
+    PromoteSets({.min_score_share = 0, .min_rank_share = 0}, scorer, scene->camera, *model, scene->lines, hypotheses,
+                *all);
+    PromoteSets({.min_score_share = 0, .min_rank_share = 0.95F}, scorer, scene->camera, *model, scene->lines,
+                hypotheses, *near_best);
+    ASSERT_GE(all->size(), near_best->size());
+    for (std::size_t i = 0; i < all->size(); ++i) {
+      const bool kept = i < near_best->size();
+      EXPECT_EQ((*all)[i].rank >= 0.95F * (*all)[0].rank, kept);
+      if (kept) {
+        EXPECT_EQ((*all)[i].rank, (*near_best)[i].rank);
+      }
+      cut += kept ? 0 : 1;
+    }
   }
   EXPECT_GE(first, 0.9 * count);
   EXPECT_GT(cut, 0U);
