@@ -132,10 +132,11 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
     if (testing::CornerError(*model, PoseOf(sets->front()), T) < 0.02) ++first;
     // What is cut off is the end of the list.
     const auto all = std::make_unique<CorrespondingSets>(), near_best = std::make_unique<CorrespondingSets>();
-    PromoteSets({.min_score_share = 0, .min_rank_share = 0}, scorer, scene->camera, *model, scene->lines, hypotheses,
-                *all);
-    PromoteSets({.min_score_share = 0, .min_rank_share = 0.95F}, scorer, scene->camera, *model, scene->lines,
-                hypotheses, *near_best);
+    PromotionParams every{
+        .duplicate_share = 0, .aligned_duplicate_share = 0, .min_score_share = 0, .min_rank_share = 0};
+    PromoteSets(every, scorer, scene->camera, *model, scene->lines, hypotheses, *all);
+    every.min_rank_share = 0.95F;
+    PromoteSets(every, scorer, scene->camera, *model, scene->lines, hypotheses, *near_best);
     ASSERT_GE(all->size(), near_best->size());
     for (std::size_t i = 0; i < all->size(); ++i) {
       const bool kept = i < near_best->size();

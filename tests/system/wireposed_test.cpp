@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "publish/dds_pool.h"
 #include "robot_test_base.h"
 
 namespace wirepose::test {
@@ -52,7 +53,7 @@ TEST_F(WireposedTest, SubscriberInAnotherProcessGetsEveryTopic) {
   const Json& pool = health.back()["pool"];
   EXPECT_GT(pool["high_water_bytes"], 100 << 10) << "DDS works in the static pool, and health says how much of it";
   EXPECT_GE(pool["high_water_bytes"], pool["used_bytes"]);
-  EXPECT_NEAR(pool["capacity_bytes"].get<double>(), 1 << 20, 100);
+  EXPECT_NEAR(pool["capacity_bytes"].get<double>(), static_cast<double>(kDefaultDdsPoolBytes), 100);
   EXPECT_EQ(Messages(ros, "detections").at(0)["header"]["frame_id"], "test_optical");
 }
 
