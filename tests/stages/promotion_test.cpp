@@ -135,12 +135,12 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
     PromotionParams every{
         .duplicate_share = 0, .aligned_duplicate_share = 0, .min_score_share = 0, .min_rank_share = 0};
     PromoteSets(every, scorer, scene->camera, *model, scene->lines, hypotheses, *all);
-    every.min_rank_share = 0.95F;
+    every.min_rank_share = 1;  // only what ranks as high as the best one
     PromoteSets(every, scorer, scene->camera, *model, scene->lines, hypotheses, *near_best);
     ASSERT_GE(all->size(), near_best->size());
     for (std::size_t i = 0; i < all->size(); ++i) {
       const bool kept = i < near_best->size();
-      EXPECT_EQ((*all)[i].rank >= 0.95F * (*all)[0].rank, kept);
+      EXPECT_EQ((*all)[i].rank >= (*all)[0].rank, kept);
       if (kept) {
         EXPECT_EQ((*all)[i].rank, (*near_best)[i].rank);
       }
