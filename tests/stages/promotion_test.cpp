@@ -132,6 +132,7 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
     if (testing::CornerError(*model, PoseOf(sets->front()), T) < 0.02) ++first;
     // What is cut off is the end of the list.
     const auto all = std::make_unique<CorrespondingSets>(), near_best = std::make_unique<CorrespondingSets>();
+    for (int i = 0; i < 6; ++i) hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.1, 0.02), 3));
     PromotionParams every{
         .duplicate_share = 0, .aligned_duplicate_share = 0, .min_score_share = 0, .min_rank_share = 0};
     PromoteSets(every, scorer, scene->camera, *model, scene->lines, hypotheses, *all);
