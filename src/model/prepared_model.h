@@ -56,7 +56,7 @@ struct PreparedSet {
 // A face that all of the object lies behind: it can stand on it.
 struct PreparedFoot {
   std::uint16_t face = 0;
-  Vector3 centre = Vector3::Zero();  // of its corners, m
+  Vector3 centre = Vector3::Zero();  // mean of its triangles' corners, m, model frame
 };
 
 struct PreparedModel {
