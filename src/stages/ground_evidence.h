@@ -25,8 +25,8 @@ struct GroundEvidence {
 // What stands on a plane rests on a face that all of the object lies above, turned away from the camera, and the plane
 // goes on around that face: on a table, on another box, on a shelf. Looks at the disparity map there, a few pixels
 // beside each edge of each face that the object can stand on, outside of its silhouette. `T_camera_model` is in the
-// rectified left frame, `surface` the model's own at that pose, `scene` of the same frame. Where nothing is known, or the
-// model has no such face, all shares are 0 and the gap is a half. No errors, no state. O(feet * edges).
+// rectified left frame, `surface` the model's own at that pose, `scene` of the same frame. Where nothing is known, or
+// the model has no such face, all shares are 0 and the gap is a half. No errors, no state. O(feet * edges).
 void GatherGroundEvidence(const GroundEvidenceParams& params, const RectifiedCamera& camera, const DisparityMap& scene,
                           const PreparedModel& model, const Pose& T_camera_model, const SurfaceMap& surface,
                           GroundEvidence& out);
