@@ -43,23 +43,18 @@ class LatestRing {
   // The oldest item, which stays valid until Release, and its number in the order of Put; nullptr when there is none.
   // At most one may be held.
   const T* Take(std::uint64_t& number) {
-    for (;;) {
-      std::size_t oldest = kDepth;
-      std::uint64_t found = kEmpty;
-      for (std::size_t i = 0; i < kDepth; ++i) {
-        const std::uint64_t place = places_[i].load(std::memory_order_acquire);
-        if (place != kEmpty && (found == kEmpty || place < found)) {
-          oldest = i;
-          found = place;
-        }
+    // One look over the places is not one moment: the putter may fill a place already passed, then one still ahead. But
+    // all that is older than what one look found was there before the next began: found twice, it is the oldest.
+    for (std::uint64_t found = Oldest(); found != kEmpty;) {
+      const std::uint64_t again = Oldest();
+      // The exchange fails when the putter has replaced the item.
+      if (again == found && PlaceOf(found).compare_exchange_strong(found, kEmpty, std::memory_order_acq_rel)) {
+        number = NumberOf(again);
+        return &blocks_[BlockOf(again)];
       }
-      if (found == kEmpty) return nullptr;
-      // Fails when the putter has replaced it: then there is an older one elsewhere, or this newer one.
-      if (places_[oldest].compare_exchange_strong(found, kEmpty, std::memory_order_acq_rel)) {
-        number = (found >> kBlockBits) - 1;
-        return &blocks_[BlockOf(found)];
-      }
+      found = again;
     }
+    return nullptr;
   }
   void Release(const T* item) {
     free_[static_cast<std::size_t>(item - blocks_.data())].store(true, std::memory_order_release);
@@ -77,6 +72,18 @@ class LatestRing {
   static std::uint64_t Pack(std::uint64_t number, std::size_t block) { return ((number + 1) << kBlockBits) | block; }
   static std::size_t BlockOf(std::uint64_t place) {
     return static_cast<std::size_t>(place & ((std::uint64_t{1} << kBlockBits) - 1));
+  }
+  static std::uint64_t NumberOf(std::uint64_t place) { return (place >> kBlockBits) - 1; }
+  std::atomic<std::uint64_t>& PlaceOf(std::uint64_t place) { return places_[NumberOf(place) % kDepth]; }
+
+  // The oldest in one look over the places.
+  [[nodiscard]] std::uint64_t Oldest() const {
+    std::uint64_t oldest = kEmpty;
+    for (const auto& place : places_) {
+      const std::uint64_t found = place.load(std::memory_order_acquire);
+      if (found != kEmpty && (oldest == kEmpty || found < oldest)) oldest = found;
+    }
+    return oldest;
   }
 
   // There always is one: at most kDepth wait and one is being read.
