@@ -125,33 +125,32 @@ std::uint8_t SharedEnd(const PreparedModel& model, const PreparedEdge& base, con
   return near(base.a, other.a) || near(base.a, other.b) ? 0 : 2;
 }
 
-void AddMember(const PreparedModel& model, const ModelSetMember& member, std::uint8_t base_end, PreparedMembers& out) {
-  const std::size_t i = out.count++;
-  out.distance_m[i] = member.distance_m;
-  out.angle_rad[i] = member.angle_rad;
-  out.farthest_end_m[i] = member.farthest_end_m;
-  out.other_length_m[i] = model.edges[member.edge].length_m;
-  out.other_edge[i] = member.edge;
-  out.base_end[i] = base_end;
-}
-
-// Sets of representative base edges, members at a corner first.
+// Sets of representative base edges, members at a corner first, each part by rising distance.
 void PrepareSets(PreparedModel& model) {
   model.sets.clear();
-  model.members.count = 0;
+  model.members.clear();
   for (const ModelLineSet& set : model.view.line_sets) {
     const PreparedEdge& base = model.edges[set.base_edge];
     if (!base.representative) continue;
-    PreparedSet prepared{set.kind, set.base_edge, static_cast<std::uint16_t>(model.members.count)};
-    for (const bool corner : {true, false}) {
-      for (const ModelSetMember& member : model.view.set_members.subspan(set.first_member, set.member_count)) {
-        const std::uint8_t end = SharedEnd(model, base, model.edges[member.edge]);
-        if ((end != 2) != corner) continue;
-        AddMember(model, member, end, model.members);
-        prepared.max_distance_m = std::max(prepared.max_distance_m, member.distance_m);
-        prepared.max_farthest_end_m = std::max(prepared.max_farthest_end_m, member.farthest_end_m);
-      }
-      (corner ? prepared.corner_end : prepared.end) = static_cast<std::uint16_t>(model.members.count);
+    const std::size_t first = model.members.size();
+    for (const ModelSetMember& member : model.view.set_members.subspan(set.first_member, set.member_count)) {
+      const PreparedEdge& other = model.edges[member.edge];
+      model.members.push_back({member.distance_m, member.angle_rad, member.farthest_end_m, other.length_m, member.edge,
+                               SharedEnd(model, base, other)});
+    }
+    const auto begin = model.members.begin() + first;
+    std::sort(begin, model.members.end(), [](const PreparedMember& p, const PreparedMember& q) {
+      if ((p.base_end == 2) != (q.base_end == 2)) return q.base_end == 2;
+      return p.distance_m != q.distance_m ? p.distance_m < q.distance_m : p.other_edge < q.other_edge;
+    });
+    const auto corner_end =
+        std::find_if(begin, model.members.end(), [](const PreparedMember& m) { return m.base_end == 2; });
+    PreparedSet prepared{set.kind, set.base_edge, static_cast<std::uint16_t>(first),
+                         static_cast<std::uint16_t>(corner_end - model.members.begin()),
+                         static_cast<std::uint16_t>(model.members.size())};
+    for (auto m = begin; m != model.members.end(); ++m) {
+      prepared.max_distance_m = std::max(prepared.max_distance_m, m->distance_m);
+      prepared.max_farthest_end_m = std::max(prepared.max_farthest_end_m, m->farthest_end_m);
     }
     model.sets.push_back(prepared);
   }

@@ -32,20 +32,16 @@ inline std::size_t NextEdge(const EdgeBits& bits, std::size_t edge) {
   return kMaxModelEdges;
 }
 
-// The members of all line sets, number by number: what is compared with a pair of image lines, in vectors.
-struct PreparedMembers {
-  static constexpr std::size_t kLanes = 8;  // of a vector: whole ones may be read anywhere
-  static constexpr std::size_t kCapacity = kMaxModelSetMembers + kLanes;
-  template <typename T>
-  using Column = std::array<T, kCapacity>;
-
-  Column<float> distance_m{}, angle_rad{}, farthest_end_m{}, other_length_m{};
-  Column<std::uint16_t> other_edge;
-  Column<std::uint8_t> base_end;  // of the base edge at which the other one meets it: 0 a, 1 b; 2: none
-  std::size_t count = 0;
+// One member of a model line set, as matching reads it.
+struct PreparedMember {
+  float distance_m = 0, angle_rad = 0, farthest_end_m = 0;
+  float other_length_m = 0;
+  std::uint16_t other_edge = 0;
+  std::uint8_t base_end = 2;  // of the base edge at which the other one meets it: 0 a, 1 b; 2: none
 };
 
-// A line set with a representative base edge; members [first, corner_end) share a corner with the base edge.
+// A line set with a representative base edge; members [first, corner_end) share a corner with the base edge, and each
+// part comes by rising distance.
 struct PreparedSet {
   LineSetKind kind = LineSetKind::kParallel;
   std::uint16_t base_edge = 0;
@@ -66,7 +62,7 @@ struct PreparedModel {
   // Symmetries as poses, the identity first.
   FixedVector<Pose, kMaxModelSymmetries> symmetries;
   FixedVector<PreparedSet, kMaxModelLineSets> sets;
-  PreparedMembers members;
+  FixedVector<PreparedMember, kMaxModelSetMembers> members;
   std::array<Vector3, 8> corners;                 // of the bounding box
   FixedVector<PreparedFoot, kMaxModelFeet> feet;  // by falling area
   bool convex = false;                            // no face can hide an edge of another one

@@ -5,48 +5,12 @@
 #include <bit>
 #include <cmath>
 
-#include "base/simd.h"
 #include "base/work_budget.h"
 
 namespace wirepose {
 namespace {
 
 constexpr float kUnlimited = 1e6F;
-constexpr std::size_t kLanes = PreparedMembers::kLanes;
-
-// What the members of a set must be like that a pair of image lines may correspond to.
-struct Limits {
-  float min_distance_m, max_distance_m;
-  float angle_rad, max_angle_rad;    // the pair's, and how far a member's may be from it
-  float min_farthest_end_m;          // no member is smaller than what was seen of it
-  float min_length_m, max_length_m;  // of the other edge
-};
-
-constexpr std::size_t WholeVectors(std::size_t count) { return (count + kLanes - 1) / kLanes; }
-using Misfits = std::array<float, WholeVectors(kMaxLineSetEdges) * kLanes>;
-
-// By how much the members [first, first + count) exceed the limit that they exceed most, in its own unit: not positive
-// where a member is within all of them. In whole vectors: what follows the last member is computed and not used.
-WIREPOSE_VECTOR_KERNEL void MeasureMisfits(const PreparedMembers& members, std::size_t first, std::size_t count,
-                                           const Limits& limits, Misfits& out) {
-  const float* distance = members.distance_m.data() + first;
-  const float* angle = members.angle_rad.data() + first;
-  const float* farthest = members.farthest_end_m.data() + first;
-  const float* length = members.other_length_m.data() + first;
-  const Limits at = limits;
-  const std::size_t lanes = WholeVectors(count) * kLanes;
-  for (std::size_t k = 0; k < lanes; ++k) {
-    const float near = at.min_distance_m - distance[k], far = distance[k] - at.max_distance_m;
-    const float turned = std::abs(at.angle_rad - angle[k]) - at.max_angle_rad;
-    const float small = at.min_farthest_end_m - farthest[k];
-    const float shorter = at.min_length_m - length[k], longer = length[k] - at.max_length_m;
-    float worst = near > far ? near : far;
-    worst = worst > turned ? worst : turned;
-    worst = worst > small ? worst : small;
-    worst = worst > shorter ? worst : shorter;
-    out[k] = worst > longer ? worst : longer;
-  }
-}
 
 class Matcher {
  public:
@@ -85,7 +49,7 @@ class Matcher {
       const float room = RoomOf(pair);
       if (room < 0 || !budget_.Spend(1)) break;  // nor can the rest: pairs come by falling quality
       for (const PreparedSet& set : sets) {
-        if (pair.kind == set.kind) MatchPair(set, pair, room);
+        if (pair.kind == set.kind) MatchPair(set, pair, std::sqrt(2 * room));
       }
     }
   }
@@ -100,57 +64,68 @@ class Matcher {
     return length < edge_length * (1 + params_.length_tolerance) + slack && length + slack > min_cover * edge_length;
   }
 
-  // The most that promotion can add.
-  [[nodiscard]] float MaxPromotion() const { return params_.promotion * static_cast<float>(params_.max_promotions); }
-
   // By how much the best conceivable match of this pair outranks what is dropped: the most that a misfit may cost.
   [[nodiscard]] float RoomOf(const ImageLinePair& pair) const {
-    const float best = pair.quality + params_.cover_gain * (1 + base_cover_) + params_.junction_gain + MaxPromotion();
+    const float best = pair.quality + params_.cover_gain * (1 + base_cover_) + params_.junction_gain +
+                       params_.promotion * static_cast<float>(params_.max_promotions);
     return out_.worst() ? best - out_.worst()->rank : kUnlimited;
   }
 
-  void MatchPair(const PreparedSet& set, const ImageLinePair& pair, float room) {
+  // `sigmas`: no member farther off than this many standard deviations can be kept.
+  void MatchPair(const PreparedSet& set, const ImageLinePair& pair, float sigmas) {
     if (!pair.metric) {
-      for (std::size_t i = set.first; i < set.corner_end; ++i) Emit(set, i, pair);
+      for (std::size_t i = set.first; i < set.corner_end; ++i) Emit(set, model_.members[i], pair);
       return;
     }
-    const float longest = 1 + params_.length_tolerance, shortest = 1 - params_.length_tolerance;
     const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
-    Limits limits;
-    limits.min_farthest_end_m = (pair.farthest_end_m - slack) / longest;
     // Most pairs of a scene are too far apart for any member.
-    if (limits.min_farthest_end_m > set.max_farthest_end_m) return;
-    const float max_distance = (pair.distance_m + slack) / shortest;
-    // Nor can a member be kept that is farther off than this many standard deviations.
-    const float sigmas = std::sqrt(2 * room);
-    const float reach = sigmas * DistanceSigma(pair, max_distance);
-    limits.min_distance_m = std::max((pair.distance_m - slack) / longest, pair.distance_m - reach);
-    if (limits.min_distance_m > set.max_distance_m) return;
-    const std::size_t count = set.end - set.first;
-    if (!budget_.Spend(static_cast<std::uint32_t>(WholeVectors(count)))) return;
-    limits.max_distance_m = std::min(max_distance, pair.distance_m + reach);
-    limits.angle_rad = pair.angle_rad;
-    limits.max_angle_rad =
+    if (pair.farthest_end_m > set.max_farthest_end_m * (1 + params_.length_tolerance) + slack) return;
+    // Members whose distance agrees: a few of the rest by binary search, and those at a corner when the lines may meet.
+    float high = (pair.distance_m + slack) / (1 - params_.length_tolerance);
+    float low = (pair.distance_m - slack) / (1 + params_.length_tolerance);
+    const float reach = sigmas * DistanceSigma(pair, high);
+    high = std::min(high, pair.distance_m + reach);
+    low = std::max(low, pair.distance_m - reach);
+    const float max_angle =
         std::min(params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad, sigmas * AngleSigma(pair));
-    limits.min_length_m = (length_[pair.other] - slack_[pair.other]) / longest;
-    limits.max_length_m = (length_[pair.other] + slack_[pair.other]) / params_.min_other_cover;
-    MeasureMisfits(model_.members, set.first, count, limits, misfits_);
-    for (std::size_t k = 0; k < count; ++k) {
-      if (misfits_[k] <= 0) Emit(set, set.first + k, pair);
+    MatchRange(set, set.first, set.corner_end, {low, high, max_angle}, pair);
+    MatchRange(set, set.corner_end, set.end, {low, high, max_angle}, pair);
+  }
+
+  struct Limits {
+    float low_m, high_m;  // of the distance
+    float max_angle_rad;  // between the pair's and the member's angle
+  };
+
+  void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, const Limits& limits,
+                  const ImageLinePair& pair) {
+    const PreparedMember* members = model_.members.data();
+    if (begin == end || members[end - 1].distance_m < limits.low_m) return;
+    const PreparedMember* from =
+        std::lower_bound(members + begin, members + end, limits.low_m,
+                         [](const PreparedMember& m, float value) { return m.distance_m < value; });
+    for (const PreparedMember* m = from; m != members + end && m->distance_m <= limits.high_m && budget_.Spend(1);
+         ++m) {
+      if (std::abs(pair.angle_rad - m->angle_rad) <= limits.max_angle_rad && SizeAgrees(pair, *m)) Emit(set, *m, pair);
     }
   }
 
-  void Emit(const PreparedSet& set, std::size_t member, const ImageLinePair& pair) {
-    const std::uint8_t base_end = model_.members.base_end[member];
+  [[nodiscard]] bool SizeAgrees(const ImageLinePair& pair, const PreparedMember& member) const {
+    const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
+    if (pair.farthest_end_m > member.farthest_end_m * (1 + params_.length_tolerance) + slack) return false;
+    return Fits(length_[pair.other], slack_[pair.other], member.other_length_m, params_.min_other_cover);
+  }
+
+  void Emit(const PreparedSet& set, const PreparedMember& member, const ImageLinePair& pair) {
     CorrespondingPair match;
     match.image_pair = static_cast<std::uint16_t>(&pair - sets_.pairs.data());
     match.base_edge = set.base_edge;
-    match.other_edge = model_.members.other_edge[member];
+    match.other_edge = member.other_edge;
     match.rank = pair.quality + params_.cover_gain * base_cover_ +
                  (pair.metric ? Agreement(pair, member) : -params_.no_depth_loss);
-    if (pair.base_end != LineEnd::kNone && base_end != 2) {
+    if (pair.base_end != LineEnd::kNone && member.base_end != 2) {
       match.junction = 1;
-      match.base_flipped = base_end == static_cast<std::uint8_t>(pair.base_end) ? 0 : 1;
+      match.base_flipped = member.base_end == static_cast<std::uint8_t>(pair.base_end) ? 0 : 1;
       match.rank += params_.junction_gain;
       Collect(match);
       return;
@@ -168,19 +143,17 @@ class Matcher {
   }
 
   // Exponent of the Gaussian of V, and the other line's cover.
-  [[nodiscard]] float Agreement(const ImageLinePair& pair, std::size_t member) const {
-    const PreparedMembers& members = model_.members;
-    const float angle = (pair.angle_rad - members.angle_rad[member]) / AngleSigma(pair);
-    const float distance =
-        (pair.distance_m - members.distance_m[member]) / DistanceSigma(pair, members.distance_m[member]);
-    const float cover = std::min(1.0F, length_[pair.other] / members.other_length_m[member]);
+  [[nodiscard]] float Agreement(const ImageLinePair& pair, const PreparedMember& member) const {
+    const float angle = (pair.angle_rad - member.angle_rad) / AngleSigma(pair);
+    const float distance = (pair.distance_m - member.distance_m) / DistanceSigma(pair, member.distance_m);
+    const float cover = std::min(1.0F, length_[pair.other] / member.other_length_m);
     return params_.cover_gain * cover - 0.5F * (angle * angle + distance * distance);
   }
 
   void Collect(const CorrespondingPair& match) {
     // With the most that promotion can add it would still be dropped: it only counts for the others.
-    const bool hopeless = out_.worst() && match.rank + MaxPromotion() < out_.worst()->rank;
-    if (hopeless || !matches_.try_push_back(match)) out_.CountDropped(1);
+    const float best = match.rank + params_.promotion * static_cast<float>(params_.max_promotions);
+    if ((out_.worst() && best < out_.worst()->rank) || !matches_.try_push_back(match)) out_.CountDropped(1);
     EdgeBits& edges = edges_[match.base_flipped];
     edges[match.other_edge / 32] |= 1U << (match.other_edge % 32);
   }
@@ -212,7 +185,6 @@ class Matcher {
   float base_cover_ = 0;
   FixedVector<CorrespondingPair, 2048> matches_;
   EdgeBits edges_[2] = {};
-  Misfits misfits_;  // of the members compared last
   WorkBudget budget_;
 };
 

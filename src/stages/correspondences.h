@@ -22,8 +22,8 @@ struct CorrespondenceParams {
   float cover_gain = 2.0F;       // rank of a line that shows its whole edge
   float junction_gain = 1.0F;    // rank of an image junction that is the model corner
   float no_depth_loss = 2.0F;    // rank given up by a pair whose V is not known
-  // Pairs tried on base edges and vectors of eight members compared, for one model in one frame: bounds the time.
-  // Simulated scenes need up to 310,000.
+  // Members compared with image pairs, for one model in one frame: bounds the time. Simulated kitchens need up to
+  // 280,000.
   std::uint32_t max_steps = 600'000;
 };
 
