@@ -2,6 +2,8 @@
 #ifndef WIREPOSE_GEOMETRY_CAMERA_H_
 #define WIREPOSE_GEOMETRY_CAMERA_H_
 
+#include <algorithm>
+
 #include "geometry/se3.h"
 
 namespace wirepose {
@@ -47,6 +49,31 @@ struct RectifiedCamera {
     const double z = f * baseline / disparity;
     return {(u - cx) * z / f, (v - cy) * z / f, z};
   }
+};
+
+// The points of a model at one pose, seen in the left image, in single precision.
+class ProjectedModel {
+ public:
+  ProjectedModel(const RectifiedCamera& camera, const Pose& T_camera_model)
+      : R_(T_camera_model.R.cast<float>()),
+        t_(T_camera_model.t.cast<float>()),
+        f_(static_cast<float>(camera.f)),
+        centre_(static_cast<float>(camera.cx), static_cast<float>(camera.cy)) {}
+
+  // Pixel of a point of the model; one nearer than 5 cm, or behind the camera, as if it were there.
+  [[nodiscard]] Vector2 Pixel(const Vector3& point) const {
+    constexpr float kMinDepthM = 0.05F;
+    const Vector3 p = R_ * point + t_;
+    return f_ / std::max(p.z(), kMinDepthM) * p.head<2>() + centre_;
+  }
+  // The camera's centre in the model's frame.
+  [[nodiscard]] Vector3 Eye() const { return -(R_.transpose() * t_); }
+
+ private:
+  Matrix3 R_;
+  Vector3 t_;
+  float f_;
+  Vector2 centre_;
 };
 
 }  // namespace wirepose

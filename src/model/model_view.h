@@ -2,6 +2,7 @@
 #ifndef WIREPOSE_MODEL_MODEL_VIEW_H_
 #define WIREPOSE_MODEL_MODEL_VIEW_H_
 
+#include <array>
 #include <span>
 #include <string_view>
 
@@ -35,6 +36,20 @@ struct ModelView {
 inline bool IsTowards(const ModelFace& face, const Vector3& eye) {
   return Vector3(face.normal[0], face.normal[1], face.normal[2]).dot(eye) > face.offset_m;
 }
+
+// The faces that turn towards an observer at `eye` (model frame, m). O(faces).
+class FacesTowards {
+ public:
+  FacesTowards(const ModelView& model, const Vector3& eye) {
+    for (std::size_t f = 0; f < model.faces.size(); ++f) towards_[f] = IsTowards(model.faces[f], eye);
+  }
+  [[nodiscard]] bool Has(std::uint16_t face) const { return face != kNoFace && towards_[face]; }
+  // The background begins behind an edge of which no more than one face turns towards the observer.
+  [[nodiscard]] bool IsOutline(const ModelEdge& edge) const { return !(Has(edge.face[0]) && Has(edge.face[1])); }
+
+ private:
+  std::array<bool, kMaxModelFaces> towards_{};
+};
 
 }  // namespace wirepose
 

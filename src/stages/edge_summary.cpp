@@ -20,23 +20,19 @@ struct FaceSums {
 class Summary {
  public:
   Summary(const VerifyParams& params, const PreparedModel& model, const Pose& T_camera_model)
-      : params_(params), model_(model) {
-    const Vector3 eye = -(T_camera_model.R.transpose() * T_camera_model.t).cast<float>();
-    for (std::size_t f = 0; f < model.view.faces.size(); ++f) towards_[f] = IsTowards(model.view.faces[f], eye);
-  }
+      : params_(params),
+        model_(model),
+        towards_(model.view, -(T_camera_model.R.transpose() * T_camera_model.t).cast<float>()) {}
 
   void Add(std::size_t edge, const EdgeSums& e) {
     all_.Add(e);
-    // The background begins behind an edge of which one face turns away.
-    int towards = 0;
     for (const std::uint16_t face : model_.view.edges[edge].face) {
-      if (face == kNoFace || !towards_[face]) continue;
-      ++towards;
+      if (!towards_.Has(face)) continue;
       faces_[face].samples += e.samples;
       faces_[face].hits += e.hits;
       faces_[face].length_px += e.length_px;
     }
-    (towards < 2 ? outline_ : inner_).Add(e);
+    (towards_.IsOutline(model_.view.edges[edge]) ? outline_ : inner_).Add(e);
     if (e.hits > 3) {
       variance_ += e.offset_squared - e.offset * e.offset / e.hits;
       spread_hits_ += e.hits;
@@ -117,7 +113,7 @@ class Summary {
 
   const VerifyParams& params_;
   const PreparedModel& model_;
-  std::array<bool, kMaxModelFaces> towards_{};
+  FacesTowards towards_;
   EdgeSums all_, outline_, inner_;
   float variance_ = 0, spread_hits_ = 0;
   float edges_ = 0, full_edges_ = 0, weak_edges_ = 0, ends_ = 0, weakest_ = 1, dimmest_ = 1;

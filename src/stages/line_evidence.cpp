@@ -1,14 +1,12 @@
 #include "stages/line_evidence.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace wirepose {
 namespace {
 
 constexpr float kPriorSegments = 2, kPriorPx = 50;
-constexpr float kMinDepthM = 0.05F;
 
 // The visible part of a model edge in the left image, from a to b.
 struct VisibleEdge {
@@ -39,15 +37,7 @@ class Gatherer {
  public:
   Gatherer(const LineEvidenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
            const Pose& T_camera_model)
-      : params_(params),
-        model_(model),
-        R_(T_camera_model.R.cast<float>()),
-        t_(T_camera_model.t.cast<float>()),
-        f_(static_cast<float>(camera.f)),
-        centre_(static_cast<float>(camera.cx), static_cast<float>(camera.cy)) {
-    const Vector3 eye = -(R_.transpose() * t_);
-    for (std::size_t k = 0; k < model.view.faces.size(); ++k) towards_[k] = IsTowards(model.view.faces[k], eye);
-  }
+      : params_(params), model_(model), projected_(camera, T_camera_model), towards_(model.view, projected_.Eye()) {}
 
   void Add(std::span<const EdgeSample> samples, std::span<const Segment2> segments) {
     VisibleEdge edge;
@@ -59,11 +49,6 @@ class Gatherer {
   [[nodiscard]] const Sums& sums() const { return sums_; }
 
  private:
-  [[nodiscard]] Vector2 Project(const Vector3& point) const {
-    const Vector3 p = R_ * point + t_;
-    return f_ / std::max(p.z(), kMinDepthM) * p.head<2>() + centre_;
-  }
-
   bool Place(std::span<const EdgeSample> samples, VisibleEdge& edge) const {
     edge.samples = samples;
     edge.a = samples.front().left;
@@ -73,12 +58,11 @@ class Gatherer {
     edge.direction = delta / edge.length;
     edge.normal = {-edge.direction.y(), edge.direction.x()};
     const std::size_t e = samples.front().edge;
-    const float p = edge.Along(Project(model_.edges[e].a)), q = edge.Along(Project(model_.edges[e].b));
+    const float p = edge.Along(projected_.Pixel(model_.edges[e].a));
+    const float q = edge.Along(projected_.Pixel(model_.edges[e].b));
     edge.before = std::max(0.0F, -std::min(p, q));
     edge.after = std::max(0.0F, std::max(p, q) - edge.length);
-    int towards = 0;
-    for (const std::uint16_t face : model_.view.edges[e].face) towards += face != kNoFace && towards_[face] ? 1 : 0;
-    edge.outline = towards < 2;
+    edge.outline = towards_.IsOutline(model_.view.edges[e]);
     return true;
   }
 
@@ -117,11 +101,8 @@ class Gatherer {
 
   const LineEvidenceParams& params_;
   const PreparedModel& model_;
-  Matrix3 R_;
-  Vector3 t_;
-  float f_;
-  Vector2 centre_;
-  std::array<bool, kMaxModelFaces> towards_{};
+  ProjectedModel projected_;
+  FacesTowards towards_;
   Sums sums_;
 };
 

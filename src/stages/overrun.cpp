@@ -7,7 +7,6 @@ namespace wirepose {
 namespace {
 
 constexpr float kMinLengthPx = 25;
-constexpr float kMinDepthM = 0.05F;
 constexpr std::array<float, 3> kBeyondPx = {5, 8, 11};
 
 enum class EndSeen { kOutside, kEnds, kGoesOn };
@@ -33,14 +32,7 @@ struct EdgeEnds {
 
 Overrun MeasureOverrun(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model,
                        const Pose& T_camera_model, const EdgeSamples& samples) {
-  const Matrix3 R = T_camera_model.R.cast<float>();
-  const Vector3 t = T_camera_model.t.cast<float>();
-  const auto f = static_cast<float>(camera.f);
-  const Vector2 centre(static_cast<float>(camera.cx), static_cast<float>(camera.cy));
-  const auto project = [&](const Vector3& point) -> Vector2 {
-    const Vector3 p = R * point + t;
-    return f / std::max(p.z(), kMinDepthM) * p.head<2>() + centre;
-  };
+  const ProjectedModel projected(camera, T_camera_model);
   std::array<bool, kMaxModelEdges> seen{};
   for (const EdgeSample& s : samples) seen[s.edge] = true;
   FixedVector<EdgeEnds, kMaxModelEdges> edges;
@@ -48,7 +40,7 @@ Overrun MeasureOverrun(const RectifiedCamera& camera, const EdgeMap& left, const
   int ends = 0, overrun = 0;
   for (std::size_t e = 0; e < model.edges.size(); ++e) {
     if (!seen[e]) continue;
-    const Vector2 a = project(model.edges[e].a), b = project(model.edges[e].b);
+    const Vector2 a = projected.Pixel(model.edges[e].a), b = projected.Pixel(model.edges[e].b);
     const float length = (b - a).norm();
     if (length < kMinLengthPx) continue;
     const Vector2 direction = (b - a) / length;
