@@ -282,10 +282,10 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   timer.Done(Stage::kHypotheses);
 
   refined_.clear();
-  for (std::size_t i = 0; i < std::min(sets_.size(), kMaxRefined); ++i) {
-    const CorrespondingSet& set = sets_[i];
+  const std::span<const CorrespondingSet> sets = WorthRefining(params_.promotion, sets_);
+  for (const CorrespondingSet& set : sets) {
     Candidate candidate;
-    candidate.order = static_cast<std::uint16_t>(i);
+    candidate.order = static_cast<std::uint16_t>(&set - sets.data());
     candidate.members = set.members;
     RefineFrom(m, {Orthonormalize(set.R.cast<double>()), set.t.cast<double>()}, candidate);
   }

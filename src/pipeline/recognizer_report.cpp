@@ -78,9 +78,9 @@ void Recognizer::FindTurnedRivals(const Candidate& candidate, float min_odds, Ri
   const SceneEdges scene = Edges();
   const PoseScorer scorer(params_.hypotheses.score, scene, model);
   const auto support = [&](const Pose& T) {
-    float score = 0;
+    PoseSupport found;
     const Vector3 eye = T.Inverse().t.cast<float>();
-    return scorer.Score(T.R.cast<float>(), T.t.cast<float>(), model.VisibleEdges(eye), score) ? score : 0;
+    return scorer.Score(T.R.cast<float>(), T.t.cast<float>(), model.VisibleEdges(eye), found) ? found.score : 0;
   };
   const float needed = params_.ambiguity.turned_support * support(candidate.pose.T_camera_model);
   const float tolerance = params_.ambiguity.distinct_share * model.view.diameter_m;

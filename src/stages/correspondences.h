@@ -23,8 +23,8 @@ struct CorrespondenceParams {
   float junction_gain = 1.0F;    // rank of an image junction that is the model corner
   float no_depth_loss = 2.0F;    // rank given up by a pair whose V is not known
   // Members compared with image pairs, for one model in one frame: bounds the time. Simulated kitchens need up to
-  // 280,000.
-  std::uint32_t max_steps = 600'000;
+  // 280,000 with 3,072 image pairs.
+  std::uint32_t max_steps = 1'000'000;
 };
 
 // The smallest corresponding line set: an image pair and the model pair that shares its parameter vector.

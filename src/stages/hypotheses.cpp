@@ -223,7 +223,10 @@ class HypothesisMaker {
     const EdgeBits& visible = model_.EdgesSeenFrom(-(hypothesis_.R.transpose() * hypothesis_.t));
     if (!HasEdge(visible, hypothesis_.base_edge) || !HasEdge(visible, hypothesis_.other_edge)) return;
     if (!budget_.Spend(1)) return;
-    if (scorer_.Score(hypothesis_.R, hypothesis_.t, visible, hypothesis_.score)) out_.Push(hypothesis_);
+    PoseSupport support;
+    if (!scorer_.Score(hypothesis_.R, hypothesis_.t, visible, support)) return;
+    hypothesis_.score = support.score;
+    out_.Push(hypothesis_);
   }
 
   const HypothesisParams& params_;

@@ -31,15 +31,12 @@ struct EdgeEnds {
 }  // namespace
 
 Overrun MeasureOverrun(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model,
-                       const Pose& T_camera_model, const EdgeSamples& samples) {
+                       const Pose& T_camera_model, const EdgeBits& seen) {
   const ProjectedModel projected(camera, T_camera_model);
-  std::array<bool, kMaxModelEdges> seen{};
-  for (const EdgeSample& s : samples) seen[s.edge] = true;
   FixedVector<EdgeEnds, kMaxModelEdges> edges;
   std::array<std::uint8_t, kMaxModelVertices> goes_on{};  // edges that go on beyond each vertex
   int ends = 0, overrun = 0;
-  for (std::size_t e = 0; e < model.edges.size(); ++e) {
-    if (!seen[e]) continue;
+  for (std::size_t e = NextEdge(seen, 0); e < model.edges.size(); e = NextEdge(seen, e + 1)) {
     const Vector2 a = projected.Pixel(model.edges[e].a), b = projected.Pixel(model.edges[e].b);
     const float length = (b - a).norm();
     if (length < kMinLengthPx) continue;

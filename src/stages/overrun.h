@@ -5,7 +5,6 @@
 #include "geometry/camera.h"
 #include "model/prepared_model.h"
 #include "stages/edge_map.h"
-#include "stages/sample_edges.h"
 
 namespace wirepose {
 
@@ -16,10 +15,10 @@ struct Overrun {
 };
 
 // Do image edges go on where the model's end? An object's edges end at its corners; lines of clutter that happen to lie
-// right seldom do, and on a larger box all edges that run one way go on. `samples` tells which edges are visible at the
+// right seldom do, and on a larger box all edges that run one way go on. `seen`: the edges that are visible at the
 // pose. O(edges).
 Overrun MeasureOverrun(const RectifiedCamera& camera, const EdgeMap& left, const PreparedModel& model,
-                       const Pose& T_camera_model, const EdgeSamples& samples);
+                       const Pose& T_camera_model, const EdgeBits& seen);
 
 }  // namespace wirepose
 

@@ -37,7 +37,7 @@ bool PoseScorer::Project(const PreparedEdge& edge, const Matrix3& R, const Vecto
   return true;
 }
 
-bool PoseScorer::Score(const Matrix3& R, const Vector3& t, const EdgeBits& visible, float& score) const {
+bool PoseScorer::Score(const Matrix3& R, const Vector3& t, const EdgeBits& visible, PoseSupport& out) const {
   struct Sampled {
     Projected p;
     int n;
@@ -64,7 +64,8 @@ bool PoseScorer::Score(const Matrix3& R, const Vector3& t, const EdgeBits& visib
     AddSupport(scene_.right, right_gain_, {p.a.x() - p.disparity_a, p.a.y()}, {p.b.x() - p.disparity_b, p.b.y()}, s.n,
                right);
   }
-  score = left.sum + right.sum;
+  out = {left.sum + right.sum, left.Share(), scene_.camera.has_right_image ? right.Share() : left.Share(),
+         static_cast<int>(sampled.size())};
   return true;
 }
 

@@ -25,6 +25,13 @@ struct SceneEdges {
   const EdgeMap& right;
 };
 
+// The coarse score of a pose and what it is made of.
+struct PoseSupport {
+  float score = 0;            // log-likelihood ratio of the edge samples: object at this pose against background
+  float left = 0, right = 0;  // shares of the samples inside an image that show an edge; alike without a right image
+  int edges = 0;              // that were sampled
+};
+
 // Scores many poses of one model in one frame. Cheap to make; holds references to what it was made from.
 class PoseScorer {
  public:
@@ -38,10 +45,11 @@ class PoseScorer {
   // False when the edge comes too near to the camera plane (5 cm).
   bool Project(const PreparedEdge& edge, const Matrix3& R, const Vector3& t, Projected& out) const;
 
-  // Log-likelihood ratio of the visible edges' samples in both images, object at (R, t) against background. False when
-  // too little of the object lies in the image, its longest edges already fail or the left image speaks against it.
-  // `visible` are the edges to score.
-  bool Score(const Matrix3& R, const Vector3& t, const EdgeBits& visible, float& score) const;
+  // Support of the visible edges in both images, object at (R, t). False when too little of the object lies in the
+  // image, its longest edges already fail or the left image speaks against it. `visible` are the edges to score.
+  bool Score(const Matrix3& R, const Vector3& t, const EdgeBits& visible, PoseSupport& out) const;
+
+  [[nodiscard]] const SceneEdges& scene() const { return scene_; }
 
  private:
   struct LogGain {
@@ -50,6 +58,10 @@ class PoseScorer {
   struct Support {
     float sum = 0;
     int hits = 0, inside = 0;
+
+    [[nodiscard]] float Share() const {
+      return inside > 0 ? static_cast<float>(hits) / static_cast<float>(inside) : 0.0F;
+    }
   };
   [[nodiscard]] LogGain Gain(const EdgeMap& map) const;
   static void AddSupport(const EdgeMap& map, const LogGain& gain, const Vector2& a, const Vector2& b, int n,

@@ -6,12 +6,10 @@
 #include <cstring>
 
 #include "base/simd.h"
+#include "stages/overrun.h"
 
 namespace wirepose {
 namespace {
-
-// Poses that are promoted; the rest of the hypotheses is too weak to matter.
-constexpr std::size_t kMaxPromoted = 2 * kMaxCandidates;
 
 // Lines looked at in one go: where none of them is marked, as almost everywhere, all are passed over.
 constexpr std::size_t kBlock = 8;
@@ -56,9 +54,12 @@ class Promoter {
       if (!Align(set)) return false;
     }
     const EdgeBits visible = Visible(set);
-    if (!scorer_.Score(set.R, set.t, visible, set.score)) return false;
-    set.rank = set.score + params_.line_gain * static_cast<float>(set.line_count) +
-               params_.face_gain * static_cast<float>(set.face_count);
+    PoseSupport support;
+    if (!scorer_.Score(set.R, set.t, visible, support)) return false;
+    set.score = support.score;
+    set.strength = set.score + params_.line_gain * static_cast<float>(set.line_count) +
+                   params_.face_gain * static_cast<float>(set.face_count);
+    GatherEvidence(visible, support, set);
     return true;
   }
 
@@ -130,6 +131,62 @@ class Promoter {
     return true;
   }
 
+  void GatherEvidence(const EdgeBits& visible, const PoseSupport& support, CorrespondingSet& set) const {
+    SetEvidence& e = set.evidence;
+    e.score = support.score;
+    e.left = support.left;
+    e.right = support.right;
+    e.edges = static_cast<float>(support.edges);
+    e.lines = set.line_count;
+    e.overrun =
+        MeasureOverrun(camera_, scorer_.scene().left, model_, {set.R.cast<double>(), set.t.cast<double>()}, visible)
+            .share;
+    float length = 0, deep = 0, residual = 0, misfit = 0;
+    for (const Found& f : found_) {
+      PoseScorer::Projected p;
+      if (!scorer_.Project(model_.edges[f.member.edge], set.R, set.t, p)) continue;
+      const Line3& line = lines_[f.member.line];
+      length += f.length_px;
+      residual += f.length_px * Residual(line.segment, p);
+      if (!line.has_depth) continue;
+      deep += f.length_px;
+      misfit += f.length_px * DisparityMisfit(line, p);
+    }
+    // One pixel more, so that nothing is divided by zero.
+    e.residual_px = residual / (length + 1);
+    e.disparity_misfit = misfit / (deep + 1);
+    e.depth_share = deep / (VisibleLength(set, visible) + 1);
+  }
+
+  // Mean distance of the segment's ends from the edge.
+  static float Residual(const Segment2& s, const PoseScorer::Projected& p) {
+    const Vector2 d = p.b - p.a;
+    const auto across = [&](const Vector2& q) { return std::abs((q - p.a).x() * d.y() - (q - p.a).y() * d.x()); };
+    return 0.5F * (across(s.a) + across(s.b)) / std::max(1.0F, d.norm());
+  }
+
+  // Difference of the disparities at the line's middle, in its standard deviations.
+  static float DisparityMisfit(const Line3& line, const PoseScorer::Projected& p) {
+    constexpr float kFloorPx2 = 0.09F;
+    const Vector2 d = p.b - p.a;
+    const float along = (line.segment.Middle() - p.a).dot(d) / std::max(1.0F, d.squaredNorm());
+    const float expected = p.disparity_a + along * (p.disparity_b - p.disparity_a);
+    const float measured = 0.5F * (line.disparity_a_px + line.disparity_b_px);
+    return std::abs(measured - expected) / std::sqrt(MiddleVariance(line) + kFloorPx2);
+  }
+
+  // Of the disparity in the middle of a line, px^2.
+  static float MiddleVariance(const Line3& line) { return 0.25F * (line.var_a + line.var_b + 2 * line.cov_ab); }
+
+  [[nodiscard]] float VisibleLength(const CorrespondingSet& set, const EdgeBits& visible) const {
+    float length = 0;
+    for (std::size_t e = NextEdge(visible, 0); e < model_.edges.size(); e = NextEdge(visible, e + 1)) {
+      PoseScorer::Projected p;
+      if (scorer_.Project(model_.edges[e], set.R, set.t, p)) length += (p.b - p.a).norm();
+    }
+    return length;
+  }
+
   [[nodiscard]] bool NoneNear(std::size_t block) const {
     std::uint64_t marks;
     static_assert(sizeof(marks) == kBlock);
@@ -142,8 +199,7 @@ class Promoter {
     const float middle = 0.5F * (s0 + s1);
     const float expected = p.disparity_a + middle * (p.disparity_b - p.disparity_a);
     const float measured = 0.5F * (line.disparity_a_px + line.disparity_b_px);
-    const float sigma = std::sqrt(0.25F * (line.var_a + line.var_b + 2 * line.cov_ab));
-    return std::abs(expected - measured) < 4 + 5 * sigma;
+    return std::abs(expected - measured) < 4 + 5 * std::sqrt(MiddleVariance(line));
   }
 
   [[nodiscard]] bool FacesCamera(const CorrespondingSet& set, std::uint16_t f) const {
@@ -222,11 +278,61 @@ class Promoter {
   FixedVector<Found, kMaxModelEdges> found_;
 };
 
-struct BetterSet {
+struct StrongerSet {
   bool operator()(const CorrespondingSet& p, const CorrespondingSet& q) const {
-    return p.rank != q.rank ? p.rank > q.rank : p.t.x() < q.t.x();
+    return p.strength != q.strength ? p.strength > q.strength : p.t.x() < q.t.x();
   }
 };
+
+// A pose, and how many hypotheses are it.
+struct DistinctPose {
+  const Hypothesis* first;
+  int count;
+};
+using DistinctPoses = FixedVector<DistinctPose, kMaxPromoted>;
+
+void FindDistinct(const PromotionParams& params, const PreparedModel& model, std::span<const Hypothesis> hypotheses,
+                  DistinctPoses& out) {
+  const float tolerance = params.duplicate_share * model.view.diameter_m;
+  for (const Hypothesis& h : hypotheses) {
+    if (h.score < params.min_score_share * hypotheses[0].score) break;
+    const auto same = std::find_if(out.begin(), out.end(), [&](const DistinctPose& d) {
+      return IsSamePose(model, h.R, h.t, d.first->R, d.first->t, tolerance);
+    });
+    if (same != out.end()) {
+      ++same->count;
+    } else if (!out.try_push_back({&h, 1})) {
+      break;
+    }
+  }
+}
+
+// `sets` by falling strength.
+void MergeSets(const PreparedModel& model, std::span<const CorrespondingSet> sets, float tolerance_m,
+               CorrespondingSets& out) {
+  for (const CorrespondingSet& set : sets) {
+    const auto same = std::find_if(out.begin(), out.end(), [&](const CorrespondingSet& k) {
+      return IsSamePose(model, set.R, set.t, k.R, k.t, tolerance_m);
+    });
+    if (same != out.end()) {
+      same->evidence.hypotheses += set.evidence.hypotheses;
+    } else {
+      out.push_back(set);  // of at most kMaxPromoted
+    }
+  }
+}
+
+void RankSets(CorrespondingSets& sets) {
+  float best = 0;
+  for (const CorrespondingSet& set : sets) best = std::max(best, set.score);
+  for (CorrespondingSet& set : sets) {
+    set.evidence.score_share = best > 0 ? set.score / best : 0.0F;
+    set.rank = ScoreOf(DefaultRankTable(), TermsOf(set.evidence));
+  }
+  std::sort(sets.begin(), sets.end(), [](const CorrespondingSet& p, const CorrespondingSet& q) {
+    return p.rank != q.rank ? p.rank > q.rank : StrongerSet()(p, q);
+  });
+}
 
 }  // namespace
 
@@ -249,28 +355,25 @@ void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const 
                  const PreparedModel& model, const Lines3& lines, std::span<const Hypothesis> hypotheses,
                  CorrespondingSets& out) {
   out.clear();
-  const float tolerance = params.duplicate_share * model.view.diameter_m;
-  FixedVector<const Hypothesis*, kMaxPromoted> distinct;
-  KeepBest<CorrespondingSet, kMaxPromoted, BetterSet> best;
+  DistinctPoses distinct;
+  FindDistinct(params, model, hypotheses, distinct);
+  KeepBest<CorrespondingSet, kMaxPromoted, StrongerSet> promoted;
   Promoter promoter(params, scorer, camera, model, lines);
-  for (const Hypothesis& h : hypotheses) {
-    if (h.score < params.min_score_share * hypotheses[0].score) break;
-    bool duplicate = false;
-    for (const Hypothesis* k : distinct) duplicate = duplicate || IsSamePose(model, h.R, h.t, k->R, k->t, tolerance);
-    if (duplicate) continue;
-    if (!distinct.try_push_back(&h)) break;
+  for (const DistinctPose& pose : distinct) {
     CorrespondingSet set;
-    if (promoter.Promote(h, set)) best.Push(set);
+    if (!promoter.Promote(*pose.first, set)) continue;
+    set.evidence.hypotheses = static_cast<float>(pose.count);
+    promoted.Push(set);
   }
-  // Aligned poses meet again: keep the best of each.
-  const float aligned_tolerance = params.aligned_duplicate_share * model.view.diameter_m;
-  for (const CorrespondingSet& set : best.Sorted()) {
-    if (!out.empty() && set.rank < params.min_rank_share * out[0].rank) break;
-    bool duplicate = false;
-    for (const CorrespondingSet& k : out)
-      duplicate = duplicate || IsSamePose(model, set.R, set.t, k.R, k.t, aligned_tolerance);
-    if (!duplicate && !out.try_push_back(set)) break;
-  }
+  // Aligned poses meet again.
+  MergeSets(model, promoted.Sorted(), params.aligned_duplicate_share * model.view.diameter_m, out);
+  RankSets(out);
+}
+
+std::span<const CorrespondingSet> WorthRefining(const PromotionParams& params, const CorrespondingSets& sets) {
+  std::size_t count = 0;
+  while (count < std::min(sets.size(), kMaxRefined) && sets[count].rank >= params.min_rank) ++count;
+  return {sets.begin(), count};
 }
 
 }  // namespace wirepose

@@ -4,6 +4,7 @@
 
 #include "base/fixed_vector.h"
 #include "stages/hypotheses.h"
+#include "stages/set_rank.h"
 
 namespace wirepose {
 
@@ -14,10 +15,10 @@ struct PromotionParams {
   float sigma_disparity_px = 0.5F;  // in addition to the line's own
   float duplicate_share = 0.04F;    // of the diameter: hypotheses whose box corners are nearer than this are one ...
   float aligned_duplicate_share = 0.08F;  // ... and so are aligned sets: refinement would bring them together
-  float line_gain = 2.0F;                 // rank of each line of the set ...
-  float face_gain = 3.0F;                 // ... and of each surface it covers, added to the coarse score
-  // Of the best hypothesis's score and of the best set's rank: what comes lower is hardly ever the object.
-  float min_score_share = 0.4F, min_rank_share = 0.55F;
+  // Strength of a set: its coarse score, and this for each line and for each surface that it covers.
+  float line_gain = 2.0F, face_gain = 3.0F;
+  float min_score_share = 0.3F;  // of the best hypothesis's score: what is weaker is not promoted
+  float min_rank = 0.02F;        // a set that is less probable is not worth an adjustment
 };
 
 // One line of a corresponding set.
@@ -34,18 +35,24 @@ struct CorrespondingSet {
   std::uint16_t line_count = 0;                  // distinct model edges that found a line
   std::uint16_t face_count = 0;                  // visible surfaces that those edges touch
   float score = 0;                               // coarse score of the aligned pose
-  float rank = 0;
+  float strength = 0;                            // of sets that are one pose the strongest stays
+  SetEvidence evidence;
+  float rank = 0;  // the probability, by the evidence, that an object is near
 };
-using CorrespondingSets = FixedVector<CorrespondingSet, kMaxCandidates>;
+using CorrespondingSets = FixedVector<CorrespondingSet, kMaxPromoted>;
 
-// Hypotheses that are one pose (up to the model's symmetries) are merged, those that come near the best one promoted:
-// every image line that lies along a visible model edge joins the set, and the pose is aligned to the whole set by
-// weighted least squares of the lines' image positions and disparities (eq. 10, in the space where the errors are
-// Gaussian). Sets are ranked by score, lines and surfaces; the best kMaxCandidates that come near the best one are
-// returned, best first. `hypotheses` best first. O(hypotheses^2 + promoted * visible edges * lines).
+// Hypotheses that are one pose (up to the model's symmetries) are merged and each pose is promoted: every image line
+// that lies along a visible model edge joins the set, and the pose is aligned to the whole set by weighted least
+// squares of the lines' image positions and disparities (eq. 10, in the space where the errors are Gaussian). Of
+// aligned poses that meet, the strongest set by score, lines and surfaces stays (the paper's ranking); what remains is
+// ranked by all that is known of a set so far, best first. `hypotheses` best first, of which the first kMaxPromoted
+// poses that come near the best one are promoted. O(hypotheses * promoted + promoted * visible edges * lines).
 void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const RectifiedCamera& camera,
                  const PreparedModel& model, const Lines3& lines, std::span<const Hypothesis> hypotheses,
                  CorrespondingSets& out);
+
+// The sets to adjust: the first kMaxRefined that are probable enough.
+std::span<const CorrespondingSet> WorthRefining(const PromotionParams& params, const CorrespondingSets& sets);
 
 // True when the two poses put the model's box corners within `tolerance_m` of each other, modulo its symmetries.
 bool IsSamePose(const PreparedModel& model, const Matrix3& R1, const Vector3& t1, const Matrix3& R2, const Vector3& t2,

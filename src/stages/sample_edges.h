@@ -23,6 +23,13 @@ struct EdgeSample {
 
 using EdgeSamples = FixedVector<EdgeSample, kMaxEdgeSamples>;
 
+// The edges that have a sample.
+inline EdgeBits EdgesOf(const EdgeSamples& samples) {
+  EdgeBits edges{};
+  for (const EdgeSample& s : samples) edges[s.edge / 32] |= 1U << (s.edge % 32);
+  return edges;
+}
+
 struct SampleParams {
   float step_px = 5;          // between samples; widened when the object would need more than kMaxEdgeSamples
   float min_edge_px = 8;      // shorter projections carry no direction

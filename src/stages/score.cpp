@@ -6,7 +6,7 @@
 
 namespace wirepose {
 
-float ScoreOf(const ScoreTable& table, const EvidenceTerms& terms) {
+float ScoreOf(const ScoreTable& table, std::span<const float> terms) {
   float log_odds = table.bias;
   for (const ScoreTree& tree : table.trees) {
     std::size_t node = 0;

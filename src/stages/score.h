@@ -17,7 +17,7 @@ struct ScoreTree {
   static constexpr std::size_t kSplits = (1U << kDepth) - 1;
 
   struct Split {
-    std::uint8_t term = 0;  // index of EvidenceTerms
+    std::uint8_t term = 0;  // index of the terms
     float threshold = 0;
   };
   std::array<Split, kSplits> splits;
@@ -34,8 +34,9 @@ struct ScoreTable {
 // direction is built in: more support never lowers a score.
 const ScoreTable& DefaultScoreTable();
 
-// Logistic function of the summed leaves: of detections with score s, a share of s is right. O(trees).
-float ScoreOf(const ScoreTable& table, const EvidenceTerms& terms);
+// Logistic function of the summed leaves: of what has score s, a share of s is right. `terms`: those that the table was
+// fitted to. O(trees).
+float ScoreOf(const ScoreTable& table, std::span<const float> terms);
 
 }  // namespace wirepose
 

@@ -21,7 +21,7 @@ void GatherEvidence(const VerifyParams& params, const VerifyInput& in, const Pre
   RenderSurface(in.camera, model, T, scratch.surface);
   out.hidden = DropOccluded(params.occlusion, in.disparity, scratch.surface, scratch.samples);
   GatherEdgeEvidence(params, in, model, T, scratch.samples, out.edges);
-  const Overrun overrun = MeasureOverrun(in.camera, in.left_edges, model, T, scratch.samples);
+  const Overrun overrun = MeasureOverrun(in.camera, in.left_edges, model, T, EdgesOf(scratch.samples));
   out.edges.overrun = overrun.share;
   out.edges.crossed = overrun.crossed;
   GatherLineEvidence(params.lines, in.camera, in.segments, model, T, scratch.samples, scratch.surface, out.lines);

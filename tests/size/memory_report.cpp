@@ -43,7 +43,7 @@ constexpr Member kMembers[] = {
      "ranked by quality, then measured and grouped by base line"},
     {"corresponding pairs", sizeof(CorrespondingPairs), 1, "kMaxCorrespondences", "of one model at a time"},
     {"hypotheses", sizeof(Hypotheses), 1, "kMaxHypotheses", "of one model at a time"},
-    {"corresponding sets", sizeof(CorrespondingSets), 1, "kMaxCandidates", "of one model at a time"},
+    {"corresponding sets", sizeof(CorrespondingSets), 1, "kMaxPromoted", "of one model at a time"},
     {"refined candidates", sizeof(Candidate) * (kMaxRefined + kMaxPriors), 1, "kMaxRefined + kMaxPriors",
      "of one model at a time"},
     {"priors", sizeof(PosePrior) * kMaxPriors, 1, "kMaxPriors", "predicted poses to start from"},

@@ -96,12 +96,11 @@ TEST(Promotion, AlignsToAllLines) {
 }
 
 // The truth among wrong poses: it comes first, ranks fall, no pose comes twice.
-TEST(Promotion, RanksByLinesAndSurfaces) {
+TEST(Promotion, RanksTheTruthFirst) {
   Random random(3);
   const TestModel model = testing::Load("parcel_box");
   const auto sets = std::make_unique<CorrespondingSets>();
   int first = 0;
-  std::size_t cut = 0;
   const int count = Cases(20);
   for (int k = 0; k < count; ++k) {
     const Pose T = testing::AnyView(random, *model, testing::TestCamera(), 300);
@@ -117,39 +116,87 @@ TEST(Promotion, RanksByLinesAndSurfaces) {
     PromoteSets({}, scorer, scene->camera, *model, scene->lines, hypotheses, *sets);
     ASSERT_FALSE(sets->empty());
     const double tolerance = static_cast<double>(PromotionParams{}.duplicate_share * model->view.diameter_m);
+    float merged = 0;
     for (std::size_t i = 0; i < sets->size(); ++i) {
       const CorrespondingSet& set = (*sets)[i];
-      EXPECT_LE(set.rank, (*sets)[0].rank);
-      EXPECT_GE(set.rank, PromotionParams{}.min_rank_share * (*sets)[0].rank);
+      if (i > 0) {
+        EXPECT_LE(set.rank, (*sets)[i - 1].rank);
+      }
       EXPECT_LE(set.face_count, 3);
       EXPECT_LE(set.line_count, 9);
       EXPECT_NEAR(
-          set.rank,
+          set.strength,
           set.score + PromotionParams{}.line_gain * set.line_count + PromotionParams{}.face_gain * set.face_count,
           1e-3F);
+      merged += set.evidence.hypotheses;
       for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(Same(*model, PoseOf(set), PoseOf((*sets)[j]), tolerance));
     }
+    EXPECT_LE(merged, static_cast<float>(hypotheses.size()));
     if (testing::CornerError(*model, PoseOf(sets->front()), T) < 0.02) ++first;
-    // What is cut off is the end of the list.
-    const auto all = std::make_unique<CorrespondingSets>(), near_best = std::make_unique<CorrespondingSets>();
-    for (int i = 0; i < 6; ++i) hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.1, 0.02), 3));
-    PromotionParams every{
-        .duplicate_share = 0, .aligned_duplicate_share = 0, .min_score_share = 0, .min_rank_share = 0};
-    PromoteSets(every, scorer, scene->camera, *model, scene->lines, hypotheses, *all);
-    every.min_rank_share = 1;  // only what ranks as high as the best one
-    PromoteSets(every, scorer, scene->camera, *model, scene->lines, hypotheses, *near_best);
-    ASSERT_GE(all->size(), near_best->size());
-    for (std::size_t i = 0; i < all->size(); ++i) {
-      const bool kept = i < near_best->size();
-      EXPECT_EQ((*all)[i].rank >= (*all)[0].rank, kept);
-      if (kept) {
-        EXPECT_EQ((*all)[i].rank, (*near_best)[i].rank);
-      }
-      cut += kept ? 0 : 1;
-    }
   }
   EXPECT_GE(first, 0.9 * count);
-  EXPECT_GT(cut, 0U);
+}
+
+// The evidence of sets at the truth against that of sets at the same object moved away.
+TEST(Promotion, EvidenceSpeaksForTheTruth) {
+  Random random(5);
+  const TestModel model = testing::Load("parcel_box");
+  const auto sets = std::make_unique<CorrespondingSets>();
+  SetEvidence right, wrong;
+  int rights = 0, wrongs = 0;
+  for (int k = 0; k < Cases(40); ++k) {
+    const Pose T = testing::AnyView(random, *model, testing::TestCamera(), 300);
+    const auto scene = testing::MakeScene(random, *model, T);
+    const SceneEdges edges{scene->camera, scene->left, scene->right};
+    const PoseScoreParams params;
+    const PoseScorer scorer(params, edges, *model);
+    std::vector<Hypothesis> hypotheses = {HypothesisOf(testing::Shaken(random, T, 0.003, 0.001), 20)};
+    for (int i = 0; i < 30; ++i) hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.1, 0.04), 10));
+    PromoteSets({}, scorer, scene->camera, *model, scene->lines, hypotheses, *sets);
+    for (const CorrespondingSet& set : *sets) {
+      const bool is_right = testing::CornerError(*model, PoseOf(set), T) < 0.015;
+      ++(is_right ? rights : wrongs);
+      SetEvidence& sum = is_right ? right : wrong;
+      sum.left += set.evidence.left;
+      sum.right += set.evidence.right;
+      sum.lines += set.evidence.lines / set.evidence.edges;
+      sum.depth_share += set.evidence.depth_share;
+      sum.score_share += set.evidence.score_share;
+      EXPECT_GE(set.evidence.overrun, 0);
+      EXPECT_LE(set.evidence.overrun, 1);
+      EXPECT_LT(set.evidence.residual_px, PromotionParams{}.max_offset_px);
+    }
+  }
+  ASSERT_GE(rights, Cases(20));
+  ASSERT_GE(wrongs, Cases(10));
+  const auto speaks = [&](float SetEvidence::*term) {
+    return right.*term / static_cast<float>(rights) > wrong.*term / static_cast<float>(wrongs);
+  };
+  EXPECT_TRUE(speaks(&SetEvidence::left));
+  EXPECT_TRUE(speaks(&SetEvidence::right));
+  EXPECT_TRUE(speaks(&SetEvidence::lines));
+  EXPECT_TRUE(speaks(&SetEvidence::depth_share));
+  EXPECT_TRUE(speaks(&SetEvidence::score_share));
+}
+
+// What is adjusted is the head of the list: no more than fit, none that is too improbable.
+TEST(Promotion, WorthRefiningIsTheHeadOfTheList) {
+  const auto sets = std::make_unique<CorrespondingSets>();
+  const auto worth = [&](float min_rank) {
+    PromotionParams params;
+    params.min_rank = min_rank;
+    return WorthRefining(params, *sets).size();
+  };
+  EXPECT_EQ(worth(0), 0U);
+  for (std::size_t i = 0; i < kMaxPromoted; ++i) {
+    CorrespondingSet set;
+    set.rank = 1 / static_cast<float>(i + 1);
+    sets->push_back(set);
+  }
+  EXPECT_EQ(worth(0), kMaxRefined);
+  EXPECT_EQ(worth(1.0F / 3), 3U);
+  EXPECT_EQ(worth(0.4F), 2U);
+  EXPECT_EQ(worth(2), 0U);
 }
 
 TEST(Promotion, NoHypothesesNoSets) {

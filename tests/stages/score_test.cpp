@@ -7,6 +7,7 @@
 #include <string>
 
 #include "stage_test_support.h"
+#include "stages/set_rank.h"
 
 namespace wirepose {
 namespace {
@@ -49,11 +50,37 @@ TEST(Score, EmptyTableIsItsBias) {
   EXPECT_LT(ScoreOf({-1e9F, {}}, {}), 1e-6F);
 }
 
-TEST(Score, TableReadsKnownTermsOnly) {
-  ASSERT_FALSE(DefaultScoreTable().trees.empty());
-  for (const ScoreTree& tree : DefaultScoreTable().trees) {
-    for (const ScoreTree::Split& split : tree.splits) EXPECT_LT(split.term, kEvidenceTerms);
+void ReadsKnownTermsOnly(const ScoreTable& table, std::size_t terms) {
+  ASSERT_FALSE(table.trees.empty());
+  for (const ScoreTree& tree : table.trees) {
+    for (const ScoreTree::Split& split : tree.splits) EXPECT_LT(split.term, terms);
     for (const float leaf : tree.leaves) EXPECT_TRUE(std::isfinite(leaf));
+  }
+}
+
+TEST(Score, TablesReadKnownTermsOnly) {
+  ReadsKnownTermsOnly(DefaultScoreTable(), kEvidenceTerms);
+  ReadsKnownTermsOnly(DefaultRankTable(), kSetTerms);
+}
+
+TEST(Score, RankNeverRisesWithOverrun) {
+  Random random(2);
+  for (int k = 0; k < testing::Cases(2000); ++k) {
+    SetEvidence e;
+    e.score = static_cast<float>(random.Uniform(0, 120));
+    e.score_share = static_cast<float>(random.Uniform(0, 1));
+    e.left = static_cast<float>(random.Uniform(0, 1));
+    e.right = static_cast<float>(random.Uniform(0, 1));
+    e.edges = static_cast<float>(random.Below(80));
+    e.lines = static_cast<float>(random.Below(30));
+    e.depth_share = static_cast<float>(random.Uniform(0, 1));
+    e.residual_px = static_cast<float>(random.Uniform(0, 4));
+    e.disparity_misfit = static_cast<float>(random.Uniform(0, 5));
+    e.hypotheses = static_cast<float>(random.Below(60));
+    e.overrun = static_cast<float>(random.Uniform(0, 1));
+    SetEvidence more = e;
+    more.overrun = static_cast<float>(random.Uniform(static_cast<double>(e.overrun), 1));
+    EXPECT_LE(ScoreOf(DefaultRankTable(), TermsOf(more)), ScoreOf(DefaultRankTable(), TermsOf(e)) + 1e-5F);
   }
 }
 

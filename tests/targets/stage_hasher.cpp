@@ -83,7 +83,7 @@ void StageHasher::HashHypotheses(Digest& digest) const {
     d.Add(h.R, h.t, h.score, h.base_line, h.other_line, h.base_edge, h.other_edge);
   });
   HashOrdered(recognizer_.sets(), digest, [](const CorrespondingSet& set, Digest& d) {
-    d.Add(set.R, set.t, set.line_count, set.face_count, set.score, set.rank);
+    d.Add(set.R, set.t, set.line_count, set.face_count, set.score, set.strength, set.rank);
     for (const SetMember& m : set.members) d.Add(m.line, m.edge);
   });
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "hal/dataset/depth_dataset.h"
+#include "tools/evaluation/set_log.h"
 
 namespace wirepose::evaluation {
 namespace {
@@ -178,14 +179,18 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
   Evaluation evaluation;
   StageClock clock;
   StageTrace trace(recognizer, &clock);
+  StageObserver* stages = &clock;
+  if (options.trace) stages = &trace;
+  std::optional<SetLog> sets;
+  if (!options.sets.empty()) stages = &sets.emplace(options.sets, recognizer, *stages, clock);
   RecognitionResult result;
   for (std::size_t i = 0; i < set.frames.size(); ++i) {
     FrameTimes times;
     trace.Start(set.frames[i].gt);
-    StageObserver& stages = options.trace ? static_cast<StageObserver&>(trace) : clock;
+    if (sets) sets->Start(set.frames[i]);
     if (i == 0 || set.frames[i].scene_id != set.frames[i - 1].scene_id) TheTracker().Forget();
     const Outcome done = ProcessFrame(set.frames[i], set, recognizer, options.track ? &TheTracker() : nullptr,
-                                      TimeOf(set.frames[i], options.rate_hz), clock, stages, result, times);
+                                      TimeOf(set.frames[i], options.rate_hz), clock, *stages, result, times);
     if (!done) return Error(done.error());
     Record(set.frames[i], result, times, options.min_score, evaluation);
     if (!observer) continue;
@@ -193,6 +198,7 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
         observer({i, set.frames.size(), set.frames[i], recognizer, models, result, trace.Finish(result)});
     if (!seen) return Error(seen.error());
   }
+  if (sets && !sets->ok()) return Error(options.sets.string() + ": cannot be written; check the free space");
   evaluation.truth = truth;
   evaluation.metrics = ComputeMetrics(truth, evaluation.estimates);
   return evaluation;

@@ -1,22 +1,23 @@
 #!/usr/bin/python3
-"""Fits the score (src/stages/score.h) to candidates of simulated scenes and writes src/stages/score_table.cpp.
+"""Fits the score (src/stages/score.h) to candidates of simulated scenes and writes src/stages/score_table.cpp, or the
+rank of line sets (src/stages/set_rank.h) and src/stages/rank_table.cpp.
 
-  fit_score.py CANDIDATES.csv[:WEIGHT]... [--table FILE]
+  fit_score.py score CANDIDATES.csv[:WEIGHT]... [--table FILE]
+  fit_score.py rank SETS.csv[:WEIGHT]... [--table FILE]
 
-The files come from `wirepose eval --candidates`; WEIGHT says how much a row of a file counts (1). Right is a pose
-within 0.1 diameters of a true instance. Gradient boosted trees of fixed depth (Friedman 2001; second order leaves as in
+The files come from `wirepose eval --candidates` and `--sets`; WEIGHT says how much a row of a file counts (1). Right is
+a pose within 0.1 diameters of a true instance, or 0.15 before it is adjusted. Gradient boosted trees of fixed depth (Friedman 2001; second order leaves as in
 Chen & Guestrin 2016) under monotonicity constraints where a term's direction is known. Prints a reliability table from
 5-fold cross validation by scene. Copies of a scene must keep its number, so that they fall into one fold.
 """
 import argparse
 import csv
+import dataclasses
 import pathlib
 
 import numpy as np
 
 DEPTH = 4
-ROUNDS = 200
-RATE = 0.06
 BINS = 24
 RIDGE = 3.0
 RISING = {'visible_px', 'inside', 'support', 'sharp', 'sharp_of_support', 'full_edges', 'weakest_edge', 'distinct',
@@ -25,23 +26,38 @@ RISING = {'visible_px', 'inside', 'support', 'sharp', 'sharp_of_support', 'full_
 FALLING = {'chance', 'spread_px', 'parallax_px', 'weak_edges', 'overrun', 'crossed', 'crossing', 'crossings',
            'inner_crossings', 'beyond', 'across', 'hidden', 'through', 'level', 'misfit', 'rms_px', 'uncertainty', 'hangs',
            'gap'}
-FIRST, LAST = 'visible_px', 'gap'  # columns of the terms, in the order of EvidenceTerms
-TABLE = pathlib.Path(__file__).resolve().parents[2] / 'src/stages/score_table.cpp'
+STAGES = pathlib.Path(__file__).resolve().parents[2] / 'src/stages'
+
+
+@dataclasses.dataclass
+class Kind:
+    first: str  # columns of the terms, in the order of the core's array
+    last: str
+    right_d: float  # error up to which a pose is right, diameters
+    rounds: int
+    rate: float
+    header: str
+    table: str
+    function: str
+
+
+KINDS = {'score': Kind('visible_px', 'gap', 0.1, 300, 0.06, 'score.h', 'score_table.cpp', 'DefaultScoreTable'),
+         'rank': Kind('score', 'hypotheses', 0.15, 60, 0.12, 'set_rank.h', 'rank_table.cpp', 'DefaultRankTable')}
 
 
 class Data:
-    def __init__(self, arguments):
+    def __init__(self, kind, arguments):
         rows = []
         for argument in arguments:
             path, _, weight = argument.partition(':')
             with open(path, newline='') as file:
                 rows += [(float(weight or 1), row) for row in csv.DictReader(file)]
         if not rows:
-            raise SystemExit('fit_score.py: no candidates; name CSV files of `wirepose eval --candidates`')
+            raise SystemExit('fit_score.py: no candidates; name CSV files of `wirepose eval --candidates` or `--sets`')
         columns = list(rows[0][1])
-        self.names = columns[columns.index(FIRST):columns.index(LAST) + 1]
-        self.terms = np.array([[float(row[name]) for name in self.names] for _, row in rows])
-        self.right = np.array([float(row['error_d']) < 0.1 for _, row in rows], float)
+        self.names = columns[columns.index(kind.first):columns.index(kind.last) + 1]
+        self.terms = np.array([[float(row[name]) for name in self.names] for _, row in rows], np.float32)
+        self.right = np.array([float(row['error_d']) < kind.right_d for _, row in rows], float)
         self.weight = np.array([weight for weight, _ in rows])
         self.fold = np.array([int(row['scene_id']) % 5 for _, row in rows])
 
@@ -64,7 +80,8 @@ class Tree:
 
 
 class Booster:
-    def __init__(self, names):
+    def __init__(self, kind, names):
+        self.kind = kind
         self.sign = np.array([(n in RISING) - (n in FALLING) for n in names])
         self.trees = []
         self.bias = 0.0
@@ -75,7 +92,7 @@ class Booster:
         self.bins = np.stack([np.searchsorted(c, column) for c, column in zip(self.cuts, terms.T)], 1)
         self.bias = np.log((weight * right).sum() / (weight * (1 - right)).sum())
         log_odds = np.full(len(right), self.bias)
-        for _ in range(ROUNDS):
+        for _ in range(self.kind.rounds):
             p = 1 / (1 + np.exp(-log_odds))
             self.gradient, self.curvature = weight * (right - p), weight * p * (1 - p)
             tree = Tree()
@@ -95,7 +112,7 @@ class Booster:
             for term in range(len(self.cuts)):
                 best = max(best, self.best_cut(term, rows, g, h, value, low, high), key=lambda b: b[0])
         else:
-            tree.leaves[node - len(tree.splits)] = RATE * value
+            tree.leaves[node - len(tree.splits)] = self.kind.rate * value
             return
         if best[1] is None:  # everything goes left
             self.grow(tree, 2 * node + 1, rows, low, high)
@@ -133,24 +150,25 @@ def number(value):
 
 
 def table(booster):
-    lines = ['// Written by tools/evaluation/fit_score.py; do not edit.', '#include "stages/score.h"', '',
+    kind = booster.kind
+    lines = ['// Written by tools/evaluation/fit_score.py; do not edit.', f'#include "stages/{kind.header}"', '',
              'namespace wirepose {', 'namespace {', '', '// clang-format off',
              f'constexpr std::array<ScoreTree, {len(booster.trees)}> kTrees = {{{{']
     for tree in booster.trees:
         splits = ', '.join(f'{{{term}, {number(threshold)}}}' for term, threshold in tree.splits)
         leaves = ', '.join(number(leaf) for leaf in tree.leaves)
         lines.append(f'  {{{{{{{splits}}}}}, {{{leaves}}}}},')
-    lines += ['}};', '// clang-format on', '', '}  // namespace', '', 'const ScoreTable& DefaultScoreTable() {',
+    lines += ['}};', '// clang-format on', '', '}  // namespace', '', f'const ScoreTable& {kind.function}() {{',
               f'  static constexpr ScoreTable kTable{{{number(booster.bias)}, kTrees}};', '  return kTable;', '}', '',
               '}  // namespace wirepose', '']
     return '\n'.join(lines)
 
 
-def reliability(data):
+def reliability(kind, data):
     p = np.zeros(len(data.right))
     for k in range(5):
         held = data.fold == k
-        booster = Booster(data.names)
+        booster = Booster(kind, data.names)
         booster.fit(data.terms[~held], data.right[~held], data.weight[~held])
         p[held] = 1 / (1 + np.exp(-booster.predict(data.terms[held])))
     loss = -(data.weight * np.log(np.where(data.right > 0, p, 1 - p))).sum() / data.weight.sum()
@@ -165,16 +183,19 @@ def reliability(data):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('candidates', nargs='+', metavar='CANDIDATES.csv[:WEIGHT]')
-    parser.add_argument('--table', type=pathlib.Path, default=TABLE)
+    parser.add_argument('kind', choices=KINDS)
+    parser.add_argument('files', nargs='+', metavar='FILE.csv[:WEIGHT]')
+    parser.add_argument('--table', type=pathlib.Path)
     args = parser.parse_args()
-    data = Data(args.candidates)
-    print(f'{len(data.right)} candidates, {int(data.right.sum())} right, {len(data.names)} terms')
-    reliability(data)
-    booster = Booster(data.names)
+    kind = KINDS[args.kind]
+    file = args.table or STAGES / kind.table
+    data = Data(kind, args.files)
+    print(f'{len(data.right)} poses, {int(data.right.sum())} right, {len(data.names)} terms')
+    reliability(kind, data)
+    booster = Booster(kind, data.names)
     booster.fit(data.terms, data.right, data.weight)
-    args.table.write_text(table(booster))
-    print(f'{args.table}: {len(booster.trees)} trees')
+    file.write_text(table(booster))
+    print(f'{file}: {len(booster.trees)} trees')
 
 
 if __name__ == '__main__':
