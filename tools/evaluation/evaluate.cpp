@@ -1,6 +1,7 @@
 #include "tools/evaluation/evaluate.h"
 
 #include <chrono>
+#include <optional>
 #include <set>
 #include <utility>
 

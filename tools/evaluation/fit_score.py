@@ -6,8 +6,8 @@ rank of line sets (src/stages/set_rank.h) and src/stages/rank_table.cpp.
   fit_score.py rank SETS.csv[:WEIGHT]... [--table FILE]
 
 The files come from `wirepose eval --candidates` and `--sets`; WEIGHT says how much a row of a file counts (1). Right is
-a pose within 0.1 diameters of a true instance, or 0.15 before it is adjusted. Gradient boosted trees of fixed depth (Friedman 2001; second order leaves as in
-Chen & Guestrin 2016) under monotonicity constraints where a term's direction is known. Prints a reliability table from
+a pose within 0.1 diameters of a true instance, or 0.15 before it is adjusted. Gradient boosted trees of fixed depth
+(Friedman 2001; second order leaves as in Chen & Guestrin 2016) under monotonicity constraints where a term's direction is known. Prints a reliability table from
 5-fold cross validation by scene. Copies of a scene must keep its number, so that they fall into one fold.
 """
 import argparse
@@ -55,6 +55,9 @@ class Data:
         if not rows:
             raise SystemExit('fit_score.py: no candidates; name CSV files of `wirepose eval --candidates` or `--sets`')
         columns = list(rows[0][1])
+        if not {kind.first, kind.last} <= set(columns):
+            raise SystemExit(f'fit_score.py: {arguments[0]}: no columns {kind.first} to {kind.last}; candidates come from '
+                             '`wirepose eval --candidates`, line sets from `--sets`')
         self.names = columns[columns.index(kind.first):columns.index(kind.last) + 1]
         self.terms = np.array([[float(row[name]) for name in self.names] for _, row in rows], np.float32)
         self.right = np.array([float(row['error_d']) < kind.right_d for _, row in rows], float)

@@ -10,9 +10,9 @@
 
 namespace wirepose::evaluation {
 
-// Observes Process on the caller's thread and passes every call on to `next`, whose clock does not time the writing.
-// Holds references. Lines of the CSV: scene, image, model, error of the pose (as in
-// candidate_log.h), terms.
+// Writes one CSV row a set: scene_id, im_id, obj_id, error_d of the aligned pose as in candidate_log.h, and the terms
+// of SetEvidence. Observes Process on the caller's thread and passes every call on to `next`; `clock` does not time the
+// writing. Holds references. A file that cannot be written leaves ok() false.
 class SetLog final : public StageObserver {
  public:
   SetLog(const std::filesystem::path& file, const Recognizer& recognizer, StageObserver& next, StageClock& clock);
