@@ -5,8 +5,8 @@
 namespace wirepose::sim {
 namespace {
 
-constexpr double kFrontThickness = 0.018, kGap = 0.004;  // m
-constexpr double kPlinth = 0.1, kBoard = 0.035;          // m
+constexpr double kFrontThickness = 0.018, kFrontGap = 0.004;  // m
+constexpr double kPlinth = 0.1, kBoard = 0.035;               // m
 
 // One door or drawer front as a person before it sees it.
 struct Front {
@@ -63,8 +63,8 @@ void AddDrawers(Random& random, const KitchenStyle& style, const Front& whole, S
   const double height = (whole.z1 - whole.z0) / count;
   for (int i = 0; i < count; ++i) {
     Front f = whole;
-    f.z0 = whole.z0 + i * height + kGap / 2;
-    f.z1 = whole.z0 + (i + 1) * height - kGap / 2;
+    f.z0 = whole.z0 + i * height + kFrontGap / 2;
+    f.z1 = whole.z0 + (i + 1) * height - kFrontGap / 2;
     AddFront(random, style, f, Grip::kTop, builder);
   }
 }
@@ -78,10 +78,10 @@ void AddDoors(Random& random, const KitchenStyle& style, const Front& whole, boo
     return;
   }
   Front f = whole;
-  f.x1 = middle - kGap / 2;
+  f.x1 = middle - kFrontGap / 2;
   AddFront(random, style, f, right, builder);
   f = whole;
-  f.x0 = middle + kGap / 2;
+  f.x0 = middle + kFrontGap / 2;
   AddFront(random, style, f, left, builder);
 }
 
@@ -110,7 +110,7 @@ void BuildBaseCabinets(Random& random, const KitchenStyle& style, const Row& row
                   plinth);
   double x = row.x0;
   for (const double width : Units(random, row.x1 - row.x0)) {
-    const Front whole{x + kGap / 2, x + width - kGap / 2, row.floor_z + kPlinth + kGap, top - 0.012,
+    const Front whole{x + kFrontGap / 2, x + width - kFrontGap / 2, row.floor_z + kPlinth + kFrontGap, top - 0.012,
                       front - kFrontThickness};
     if (random.Chance(0.45)) {
       AddDrawers(random, style, whole, builder);
@@ -129,8 +129,9 @@ void BuildWallCabinets(Random& random, const KitchenStyle& style, const Row& row
   builder.AddSlab({row.x0 + 0.002, front, z0}, {row.x1 - 0.002, row.wall_y, z1}, style.carcass);
   double x = row.x0;
   for (const double width : Units(random, row.x1 - row.x0)) {
-    AddDoors(random, style, {x + kGap / 2, x + width - kGap / 2, z0 + kGap, z1 - kGap, front - kFrontThickness}, true,
-             builder);
+    AddDoors(random, style,
+             {x + kFrontGap / 2, x + width - kFrontGap / 2, z0 + kFrontGap, z1 - kFrontGap, front - kFrontThickness},
+             true, builder);
     x += width;
   }
 }

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace wirepose::sim {
 namespace {
 
 constexpr double kGap = 0.012;  // m between things
 constexpr int kTries = 40;
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kMaxOnTable = 0.6;  // m: larger things do not stand on a worktop
 
 Mesh Scaled(const Mesh& mesh, float scale) {

@@ -24,7 +24,7 @@ double ReachAlong(const Footprint& f, const Vector2d& direction) {
   return f.half.x() * std::abs(u.dot(direction)) + f.half.y() * std::abs(v.dot(direction));
 }
 
-RestingPose Rest(const Mesh& mesh, const Matrix3d& R) {
+RestingPose PoseAtRest(const Mesh& mesh, const Matrix3d& R) {
   Vector3d low = R * mesh.vertices.front().cast<double>(), high = low;
   for (const Vector3& vertex : mesh.vertices) {
     const Vector3d p = R * vertex.cast<double>();
@@ -62,7 +62,7 @@ bool Overlap(const Footprint& a, const Footprint& b, double gap_m) {
 }
 
 std::vector<RestingPose> RestingPoses(const Mesh& mesh) {
-  const RestingPose upright = Rest(mesh, Matrix3d::Identity());
+  const RestingPose upright = PoseAtRest(mesh, Matrix3d::Identity());
   if (!IsCuboidLike(mesh)) return {upright};
   // Each of the three axes may stand upright; upside down looks the same.
   Matrix3d y_up, x_up;
@@ -70,7 +70,7 @@ std::vector<RestingPose> RestingPoses(const Mesh& mesh) {
   x_up << 0, 0, -1, 0, 1, 0, 1, 0, 0;
   std::vector<RestingPose> poses;
   for (const Matrix3d& R : {Matrix3d(Matrix3d::Identity()), y_up, x_up}) {
-    const RestingPose pose = Rest(mesh, R);
+    const RestingPose pose = PoseAtRest(mesh, R);
     if (pose.half.minCoeff() >= kMinStability * pose.height / 2) poses.push_back(pose);
   }
   return poses.empty() ? std::vector<RestingPose>{upright} : poses;

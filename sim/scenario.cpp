@@ -11,7 +11,6 @@ namespace wirepose::sim {
 namespace {
 
 constexpr int kMaxLayouts = 60;
-constexpr double kDegree = std::numbers::pi / 180;
 
 // A camera at `eye` that looks at `target`, its x axis level before it is rolled.
 Pose LookAt(const Vector3d& eye, const Vector3d& target, double roll_rad) {

@@ -2,24 +2,19 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
 #include <vector>
 
+#include "hal/dataset/checks.h"
+
 namespace wirepose::dataset {
 namespace {
 
 constexpr int kMaxSide = 16384;
 constexpr double kMinBaseline = 0.001, kMaxBaseline = 10;  // m
-constexpr double kRotationTolerance = 1e-3;                // hand-typed matrices have four decimals
-
-// Leaves the reader at the first thing that is wrong; caught in ReadCalibration.
-struct Malformed {
-  std::string message;
-};
 
 class CalibrationReader {
  public:
@@ -132,8 +127,7 @@ class CalibrationReader {
   Matrix3d Rotation(const std::string& key) const {
     const YAML::Node node = Find(key);
     const Matrix3d R = ReadMatrix3(key, node);
-    const double deviation = (R * R.transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff();
-    if (!(deviation < kRotationTolerance) || R.determinant() < 0) {
+    if (!IsRotation(R)) {
       Fail(node, key, "not a rotation matrix; it maps camera 1 to camera 2");
     }
     return R;

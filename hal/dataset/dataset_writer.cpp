@@ -7,18 +7,13 @@
 
 #include "hal/dataset/calibration_file.h"
 #include "hal/dataset/json_file.h"
+#include "hal/dataset/scene_files.h"
 
 namespace wirepose::dataset {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-std::string SixDigits(int number) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%06d", number);
-  return text;
-}
 
 ordered_json RowMajor(const Matrix3d& R) {
   ordered_json list = ordered_json::array();

@@ -12,7 +12,7 @@
 namespace wirepose::dataset {
 namespace {
 
-constexpr png_uint_32 kMaxSide = 16384;
+constexpr png_uint_32 kMaxPngSide = 16384;
 constexpr std::size_t kMaxFilePixels = std::size_t{64} << 20;
 
 struct FileCloser {
@@ -49,7 +49,7 @@ class Reader {
   [[nodiscard]] bool ReadHeader(std::FILE* file) {
     if (png_ == nullptr || info_ == nullptr) return Fail("out of memory");
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
-    png_set_user_limits(png_, kMaxSide, kMaxSide);
+    png_set_user_limits(png_, kMaxPngSide, kMaxPngSide);
     png_init_io(png_, file);
     png_read_info(png_, info_);
     width_ = static_cast<int>(png_get_image_width(png_, info_));

@@ -1,6 +1,5 @@
 #include "hal/dataset/scene_files.h"
 
-#include <Eigen/LU>
 #include <charconv>
 #include <cstdio>
 #include <system_error>
@@ -12,8 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr double kRotationTolerance = 1e-3;
 
 std::vector<fs::directory_entry> Entries(const fs::path& folder) {
   std::error_code error;
@@ -28,8 +25,7 @@ Pose ReadPose(const SceneFile& file, const json& instance, const std::string& pl
   Pose T;
   T.R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(R.data());
   T.t = Vector3d(t[0], t[1], t[2]) / 1000;  // mm
-  const double deviation = (T.R * T.R.transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(deviation < kRotationTolerance) || T.R.determinant() < 0) {
+  if (!IsRotation(T.R)) {
     file.Fail(place, "cam_R_m2c is not a rotation matrix; see the BOP layout");
   }
   return T;

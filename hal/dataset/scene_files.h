@@ -13,14 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "hal/dataset/checks.h"
 #include "hal/dataset/dataset.h"
 
 namespace wirepose::dataset {
-
-// Leaves the reader at the first thing that is wrong; caught where a data set is read.
-struct Malformed {
-  std::string message;
-};
 
 // "000012" -> 12; nothing for a name that is no plain number. And back.
 std::optional<int> NumberOf(const std::string& name);

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 
 namespace wirepose {
 
@@ -16,6 +17,8 @@ using Vector3d = Eigen::Vector3d;
 using Matrix3d = Eigen::Matrix3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+inline constexpr double kDegree = std::numbers::pi / 180;  // rad
 
 // A rigid motion T_target_source: p_target = R * p_source + t. Translation in metres.
 struct Pose {

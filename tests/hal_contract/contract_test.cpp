@@ -15,7 +15,7 @@
 namespace wirepose::hal {
 namespace {
 
-constexpr std::uint64_t kFrames = 6;  // of the stream of every backend
+constexpr std::uint64_t kStreamFrames = 6;  // of the stream of every backend
 constexpr auto kLong = std::chrono::seconds(30);
 
 struct Backend {
@@ -27,7 +27,7 @@ struct Backend {
 Backend Replay() {
   return {"replay",
           [](const std::filesystem::path& folder) {
-            test::WriteDataset(folder / "set", kFrames / 2);
+            test::WriteDataset(folder / "set", kStreamFrames / 2);
             ReplayConfig config;
             config.root = folder / "set";
             return std::make_unique<ReplayCamera>(config);
@@ -43,7 +43,7 @@ Backend PacedReplay() {
   Backend backend = Replay();
   backend.name = "paced_replay";
   backend.make = [](const std::filesystem::path& folder) {
-    test::WriteDataset(folder / "set", kFrames / 2);
+    test::WriteDataset(folder / "set", kStreamFrames / 2);
     ReplayConfig config;
     config.root = folder / "set";
     config.frame_rate_hz = 200;
@@ -58,7 +58,7 @@ Backend Simulated() {
             test::WriteBoxMesh(folder / "meshes");
             (void)dataset::WriteCalibration(folder / "calib.yaml", test::SmallCalibration());
             SimulatedConfig config;
-            config.frame_count = kFrames;
+            config.frame_count = kStreamFrames;
             config.mesh_dir = folder / "meshes";
             config.calibration_path = folder / "calib.yaml";
             config.samples_per_pixel = 4;
@@ -139,7 +139,7 @@ TEST_P(CameraContract, CalibrationIsKnownWhenOpen) {
 TEST_P(CameraContract, FramesAreCompleteAndInOrder) {
   OpenAndStart();
   CaptureTime last{};
-  for (std::uint64_t i = 0; i < kFrames; ++i) {
+  for (std::uint64_t i = 0; i < kStreamFrames; ++i) {
     const auto lease = camera_->AcquireFrame(kLong);
     ASSERT_TRUE(lease) << camera_->detail();
     const StereoFrame& frame = lease->frame();
@@ -162,7 +162,7 @@ TEST_P(CameraContract, FramesAreCompleteAndInOrder) {
 
 TEST_P(CameraContract, StreamEndsAndSaysSo) {
   OpenAndStart();
-  EXPECT_EQ(ReadStream().size(), kFrames);
+  EXPECT_EQ(ReadStream().size(), kStreamFrames);
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(camera_->AcquireFrame(kLong).error(), CameraError::kEndOfStream);
     EXPECT_NE(camera_->detail(), "");
@@ -173,7 +173,7 @@ TEST_P(CameraContract, StreamEndsAndSaysSo) {
 TEST_P(CameraContract, SameBytesAfterRestartAndReopen) {
   OpenAndStart();
   const auto first = ReadStream();
-  ASSERT_EQ(first.size(), kFrames);
+  ASSERT_EQ(first.size(), kStreamFrames);
   EXPECT_NE(first[0], first[1]) << "frames differ from each other";
   ASSERT_EQ(camera_->Stop(), CameraError::kOk);
   ASSERT_EQ(camera_->Start(), CameraError::kOk);
@@ -236,7 +236,7 @@ TEST_P(CameraContract, MovedLeaseReturnsItsBufferOnce) {
 
 TEST_P(CameraContract, LeaseMayEndOnAnotherThread) {
   OpenAndStart();
-  for (std::uint64_t i = 0; i < kFrames; ++i) {
+  for (std::uint64_t i = 0; i < kStreamFrames; ++i) {
     auto lease = camera_->AcquireFrame(kLong);
     ASSERT_TRUE(lease);
     std::thread([held = *std::move(lease)]() mutable { held.Release(); }).join();

@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-EyeFrame Frame(std::uint32_t slot, int time_ms) {
+EyeFrame FrameOf(std::uint32_t slot, int time_ms) {
   return {slot, static_cast<std::uint32_t>(time_ms / 33), milliseconds(time_ms), false};
 }
 
@@ -23,10 +23,10 @@ class FramePairingTest : public ::testing::Test {
 
 TEST_F(FramePairingTest, NothingWithoutBothEyes) {
   EXPECT_FALSE(pairing_.TakeNewest(freed_));
-  pairing_.Add(0, Frame(0, 100));
+  pairing_.Add(0, FrameOf(0, 100));
   EXPECT_FALSE(pairing_.TakeNewest(freed_));
   EXPECT_TRUE(freed_.empty()) << "its partner may still come";
-  pairing_.Add(1, Frame(2, 103));
+  pairing_.Add(1, FrameOf(2, 103));
   const auto pair = pairing_.TakeNewest(freed_);
   ASSERT_TRUE(pair);
   EXPECT_EQ(pair->left.slot, 0U);
@@ -36,9 +36,9 @@ TEST_F(FramePairingTest, NothingWithoutBothEyes) {
 }
 
 TEST_F(FramePairingTest, ALostFrameDoesNotShiftThePairs) {
-  pairing_.Add(0, Frame(0, 100));
-  pairing_.Add(0, Frame(1, 133));
-  pairing_.Add(1, Frame(0, 134));  // the one at 100 ms was lost
+  pairing_.Add(0, FrameOf(0, 100));
+  pairing_.Add(0, FrameOf(1, 133));
+  pairing_.Add(1, FrameOf(0, 134));  // the one at 100 ms was lost
   const auto pair = pairing_.TakeNewest(freed_);
   ASSERT_TRUE(pair);
   EXPECT_EQ(pair->left.slot, 1U);
@@ -50,8 +50,8 @@ TEST_F(FramePairingTest, ALostFrameDoesNotShiftThePairs) {
 
 TEST_F(FramePairingTest, ASlowCallerGetsTheNewestPair) {
   for (std::uint32_t i = 0; i < 3; ++i) {
-    pairing_.Add(0, Frame(i, 100 + 33 * static_cast<int>(i)));
-    pairing_.Add(1, Frame(i, 101 + 33 * static_cast<int>(i)));
+    pairing_.Add(0, FrameOf(i, 100 + 33 * static_cast<int>(i)));
+    pairing_.Add(1, FrameOf(i, 101 + 33 * static_cast<int>(i)));
   }
   const auto pair = pairing_.TakeNewest(freed_);
   ASSERT_TRUE(pair);
@@ -61,7 +61,7 @@ TEST_F(FramePairingTest, ASlowCallerGetsTheNewestPair) {
 }
 
 TEST_F(FramePairingTest, ACameraWhosePartnerIsSilentKeepsABuffer) {
-  for (std::uint32_t i = 0; i < 4; ++i) pairing_.Add(0, Frame(i, 100 + 33 * static_cast<int>(i)));
+  for (std::uint32_t i = 0; i < 4; ++i) pairing_.Add(0, FrameOf(i, 100 + 33 * static_cast<int>(i)));
   EXPECT_FALSE(pairing_.TakeNewest(freed_));
   EXPECT_EQ(freed_.size(), 2U) << "at most two wait";
 }
@@ -75,7 +75,7 @@ TEST_F(FramePairingTest, SideBySideFramesPairWithThemselves) {
       const auto slot = std::find(with_camera.begin(), with_camera.end(), true);
       ASSERT_NE(slot, with_camera.end()) << "a buffer was lost";
       *slot = false;
-      const EyeFrame frame = Frame(static_cast<std::uint32_t>(slot - with_camera.begin()), 66 * t + 33 * k);
+      const EyeFrame frame = FrameOf(static_cast<std::uint32_t>(slot - with_camera.begin()), 66 * t + 33 * k);
       for (std::size_t eye = 0; eye < 2; ++eye) pairing_.Add(eye, frame);
     }
     FreedSlots freed;
@@ -113,8 +113,8 @@ TEST_F(FramePairingTest, RandomStreamsKeepTheBooks) {
         const auto slot = std::find(with_camera[eye].begin(), with_camera[eye].end(), true);
         if (random() % 5 == 0 || slot == with_camera[eye].end()) continue;  // lost
         *slot = false;
-        pairing.Add(eye,
-                    Frame(static_cast<std::uint32_t>(slot - with_camera[eye].begin()), 33 * t + (eye == 1 ? skew : 0)));
+        pairing.Add(
+            eye, FrameOf(static_cast<std::uint32_t>(slot - with_camera[eye].begin()), 33 * t + (eye == 1 ? skew : 0)));
       }
       if (random() % 3 == 0) continue;  // the caller is busy
       FreedSlots freed;

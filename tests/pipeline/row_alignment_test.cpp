@@ -4,13 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
 namespace wirepose {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Where the right eye is against its calibrated place: p_eye = turn * p_calibrated + shift.
 struct EyeError {

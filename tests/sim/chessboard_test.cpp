@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -16,7 +15,6 @@ namespace {
 constexpr int kColumns = 9, kRows = 6;  // inner corners
 constexpr float kSquare = 0.03F;        // m
 constexpr int kViews = 14;
-constexpr double kDegree = std::numbers::pi / 180;
 
 // The board's first inner corner, its x and y axes as OpenCV counts corners.
 std::vector<cv::Point3f> BoardCorners() {

@@ -9,12 +9,11 @@
 namespace wirepose::sim {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr int kSide = 96;  // px
+constexpr int kImageSide = 96;  // px
 
 Camera Pinhole(double psf_sigma_px = 0.5) {
-  const double c = 0.5 * (kSide - 1);
-  return {{100, 100, c, c}, kSide, kSide, Pose{}, psf_sigma_px};
+  const double c = 0.5 * (kImageSide - 1);
+  return {{100, 100, c, c}, kImageSide, kImageSide, Pose{}, psf_sigma_px};
 }
 
 // A bright half plane over a dark one, 1 m away: its edge passes `offset_px` from the image's
@@ -45,7 +44,7 @@ double Bilinear(const dataset::GrayImage& image, const Eigen::Vector2d& p) {
 // integral, which interpolation between pixels keeps.
 double EdgeAt(const dataset::GrayImage& image, const Eigen::Vector2d& normal, double along_px) {
   const Eigen::Vector2d middle =
-      Eigen::Vector2d::Constant(0.5 * (kSide - 1)) + along_px * Eigen::Vector2d(-normal.y(), normal.x());
+      Eigen::Vector2d::Constant(0.5 * (kImageSide - 1)) + along_px * Eigen::Vector2d(-normal.y(), normal.x());
   constexpr int kSteps = 40;
   constexpr double kStep = 0.1;  // px; the step within 4 px, its two levels from 4 to 8 px off
   double low = 0, high = 0, sum = 0;

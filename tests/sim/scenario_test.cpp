@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "sim/placement.h"
 #include "test_scenes.h"
@@ -12,8 +11,6 @@ namespace wirepose::sim {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 Footprint AnyFootprint(Random& random) {
   return {{random.Uniform(-1, 1), random.Uniform(-1, 1)},

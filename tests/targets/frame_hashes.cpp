@@ -13,7 +13,7 @@
 namespace wirepose::testing {
 namespace {
 
-constexpr std::size_t kMaxModelBytes = 128 * 1024;  // a refrigerator's file has 55 KiB
+constexpr std::size_t kMaxModelBytes = 64 * 1024;  // a juice dispenser's file has 60 KiB
 constexpr std::size_t kMaxPackModels = 4;
 
 Recognizer g_recognizer;

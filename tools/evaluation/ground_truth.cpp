@@ -15,28 +15,28 @@ namespace wirepose::evaluation {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using InputJson = nlohmann::json;
 
 // Malformed data, caught by ReadGroundTruth: many places can find it, one reports it.
 struct BadData : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-Json ReadJson(const fs::path& file) {
+InputJson ReadJson(const fs::path& file) {
   std::ifstream in(file);
   if (!in) {
     throw BadData(fmt::format("{}: cannot be opened; the data set layout asks for it", file.string()));
   }
   try {
-    return Json::parse(in);
-  } catch (const Json::parse_error& e) {
+    return InputJson::parse(in);
+  } catch (const InputJson::parse_error& e) {
     throw BadData(fmt::format("{}: byte {}: not valid JSON; repair or export it again", file.string(), e.byte));
   }
 }
 
 // A JSON value with the words that name its place, for error messages.
 struct Place {
-  const Json& value;
+  const InputJson& value;
   std::string where;
 
   [[noreturn]] void Fail(const std::string& what) const {
@@ -54,7 +54,7 @@ struct Place {
   [[nodiscard]] std::vector<double> Numbers(std::size_t count) const {
     if (!value.is_array() || value.size() != count) Fail(fmt::format("{} numbers are expected", count));
     std::vector<double> out;
-    for (const Json& n : value) {
+    for (const InputJson& n : value) {
       if (!n.is_number()) Fail(fmt::format("{} numbers are expected", count));
       out.push_back(n.get<double>());
     }
@@ -93,11 +93,11 @@ ObjectTruth ReadObject(const Place& info, const fs::path& mesh) {
   std::vector<ContinuousSymmetry> continuous;
   if (info.Has("symmetries_discrete")) {
     const Place list = info.At("symmetries_discrete");
-    for (const Json& s : list.value) discrete.push_back(ReadDiscrete({s, list.where}));
+    for (const InputJson& s : list.value) discrete.push_back(ReadDiscrete({s, list.where}));
   }
   if (info.Has("symmetries_continuous")) {
     const Place list = info.At("symmetries_continuous");
-    for (const Json& s : list.value) {
+    for (const InputJson& s : list.value) {
       const Place p{s, list.where};
       continuous.push_back({p.At("axis").Vector(), p.Has("offset") ? p.At("offset").Vector() : Vector3d::Zero()});
     }
@@ -112,7 +112,7 @@ ObjectTruth ReadObject(const Place& info, const fs::path& mesh) {
 
 std::map<int, ObjectTruth> ReadObjects(const fs::path& models) {
   const fs::path file = models / "models_info.json";
-  const Json json = ReadJson(file);
+  const InputJson json = ReadJson(file);
   if (!json.is_object() || json.empty()) throw BadData(file.string() + ": no objects; list each by its id");
   std::map<int, ObjectTruth> objects;
   for (const auto& [key, info] : json.items()) {
@@ -159,10 +159,10 @@ void ReadScene(const fs::path& scene, int scene_id, GroundTruth& truth) {
   const bool stereo = fs::exists(scene / "gray_cam1") || fs::exists(scene / "scene_camera_cam1.json");
   const std::string suffix = stereo ? "_cam1" : "";
   const SceneFiles files(scene, suffix);
-  const Json cameras = ReadJson(files.camera);
-  const Json gts = ReadJson(files.gt);
+  const InputJson cameras = ReadJson(files.camera);
+  const InputJson gts = ReadJson(files.gt);
   const bool has_info = fs::exists(files.gt_info);
-  const Json infos = has_info ? ReadJson(files.gt_info) : Json::object();
+  const InputJson infos = has_info ? ReadJson(files.gt_info) : InputJson::object();
   if (!cameras.is_object()) throw BadData(files.camera.string() + ": an object keyed by image id is expected");
   const auto where = [](const fs::path& f, const std::string& key) { return f.string() + ": image " + key; };
   for (const auto& [key, camera] : cameras.items()) {
@@ -196,7 +196,7 @@ GroundTruth ReadAll(const fs::path& dataset) {
   std::ranges::sort(truth.frames, {}, [](const FrameTruth& f) { return std::pair(f.scene_id, f.image_id); });
   const fs::path camera = dataset / "camera_cam1.json";
   if (fs::exists(camera)) {
-    const Json json = ReadJson(camera);
+    const InputJson json = ReadJson(camera);
     truth.image_width_px = static_cast<int>(Place{json, camera.string()}.At("width").Number());
   }
   return truth;

@@ -12,7 +12,7 @@ namespace wirepose::evaluation {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using InputJson = nlohmann::json;
 using Outcome = Result<void, std::string>;
 
 constexpr double kMmPerMetre = 1000;
@@ -33,11 +33,11 @@ ObjectTruth FromModel(const ModelView& model) {
 }
 
 template <std::size_t kCount>
-std::array<double, kCount> Numbers(const Json& json) {
+std::array<double, kCount> Numbers(const InputJson& json) {
   return json.get<std::array<double, kCount>>();
 }
 
-InstanceTruth ReadInstance(const Json& json) {
+InstanceTruth ReadInstance(const InputJson& json) {
   InstanceTruth instance;
   instance.object_id = json.at("obj_id").get<int>();
   const auto R = Numbers<9>(json.at("R"));
@@ -48,7 +48,7 @@ InstanceTruth ReadInstance(const Json& json) {
   return instance;
 }
 
-Estimate ReadDetection(const Json& json, int sequence) {
+Estimate ReadDetection(const InputJson& json, int sequence) {
   Estimate e;
   e.image_id = sequence;
   e.object_id = json.at("model_id").get<int>();
@@ -62,7 +62,7 @@ Estimate ReadDetection(const Json& json, int sequence) {
 
 // Calls `use` with every line's JSON; a line that is not JSON or lacks what `use` asks of it is an
 // error.
-Outcome ForEachLine(const fs::path& file, const char* writer, const std::function<void(const Json&)>& use) {
+Outcome ForEachLine(const fs::path& file, const char* writer, const std::function<void(const InputJson&)>& use) {
   std::ifstream in(file);
   if (!in) return unexpected<std::string>(fmt::format("{}: cannot be opened; {} writes it", file.string(), writer));
   int number = 0;
@@ -70,8 +70,8 @@ Outcome ForEachLine(const fs::path& file, const char* writer, const std::functio
     ++number;
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     try {
-      use(Json::parse(line));
-    } catch (const Json::exception& e) {
+      use(InputJson::parse(line));
+    } catch (const InputJson::exception& e) {
       return unexpected<std::string>(
           fmt::format("{}:{}: {}; give the file as {} wrote it", file.string(), number, e.what(), writer));
     }
@@ -84,10 +84,10 @@ Outcome ForEachLine(const fs::path& file, const char* writer, const std::functio
 Result<GroundTruth, std::string> ReadTruthStream(const fs::path& file, const ModelSet& models) {
   GroundTruth truth;
   for (const ModelView& model : models.views) truth.objects.emplace(static_cast<int>(model.id), FromModel(model));
-  const Outcome read = ForEachLine(file, "the simulated camera", [&](const Json& line) {
+  const Outcome read = ForEachLine(file, "the simulated camera", [&](const InputJson& line) {
     FrameTruth frame;
     frame.image_id = line.at("sequence").get<int>();
-    for (const Json& object : line.at("objects")) {
+    for (const InputJson& object : line.at("objects")) {
       const InstanceTruth instance = ReadInstance(object);
       if (truth.objects.contains(instance.object_id)) frame.instances.push_back(instance);
     }
@@ -101,11 +101,11 @@ Result<GroundTruth, std::string> ReadTruthStream(const fs::path& file, const Mod
 
 Result<Received, std::string> ReadReceivedStream(const fs::path& file) {
   Received received;
-  const Outcome read = ForEachLine(file, "'wirepose watch --json'", [&](const Json& line) {
+  const Outcome read = ForEachLine(file, "'wirepose watch --json'", [&](const InputJson& line) {
     if (!line.contains("frame_sequence")) return;
     const int sequence = line.at("frame_sequence").get<int>();
     received.frames.insert({0, sequence});
-    for (const Json& d : line.at("detections")) received.estimates.push_back(ReadDetection(d, sequence));
+    for (const InputJson& d : line.at("detections")) received.estimates.push_back(ReadDetection(d, sequence));
   });
   if (!read) return unexpected<std::string>(read.error());
   if (!received.frames.empty()) return received;

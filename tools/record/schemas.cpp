@@ -11,7 +11,7 @@ struct Definition {
   const char* fields;
 };
 
-constexpr Definition kHeader = {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"};
+constexpr Definition kHeaderMessage = {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"};
 constexpr Definition kPoint = {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"};
 constexpr Definition kVector3 = {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"};
 constexpr Definition kQuaternion = {"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"};
@@ -28,7 +28,7 @@ constexpr Definition kDetections[] = {
     {"vision_msgs/ObjectHypothesis", "string class_id\nfloat64 score\n"},
     {"vision_msgs/BoundingBox3D", "geometry_msgs/Pose center\ngeometry_msgs/Vector3 size\n"},
     {"geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
-    kHeader,
+    kHeaderMessage,
     kPose,
     kPoint,
     kQuaternion,
@@ -46,7 +46,7 @@ constexpr Definition kMarkers[] = {
     {"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"},
     {"sensor_msgs/CompressedImage", "std_msgs/Header header\nstring format\nuint8[] data\n"},
     {"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"},
-    kHeader,
+    kHeaderMessage,
     kPose,
     kPoint,
     kQuaternion,
@@ -57,13 +57,13 @@ constexpr Definition kDiagnostics[] = {
     {"diagnostic_msgs/DiagnosticStatus",
      "byte level\nstring name\nstring message\nstring hardware_id\ndiagnostic_msgs/KeyValue[] values\n"},
     {"diagnostic_msgs/KeyValue", "string key\nstring value\n"},
-    kHeader};
+    kHeaderMessage};
 
 constexpr Definition kImage[] = {
     {"sensor_msgs/Image",
      "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\n"
      "uint8[] data\n"},
-    kHeader};
+    kHeaderMessage};
 
 // The first definition is the message's own; those it holds follow, as MCAP's ros2msg encoding wants it.
 std::string SchemaOf(std::span<const Definition> definitions) {
