@@ -44,5 +44,5 @@ if(WIREPOSE_SANITIZE)
 endif()
 
 # Most of a source's time at the compiler is Eigen's: with CMAKE_UNITY_BUILD, which the presets of optimised Linux builds
-# set, rooms are compiled several sources at a time. Not src/stages, whose sources use plain names for things of their own.
+# set, rooms are compiled several sources at a time.
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)

@@ -6,7 +6,7 @@
 namespace wirepose {
 namespace {
 
-using Row = std::array<std::uint16_t, kMaxImageWidth>;
+using DisparityRow = std::array<std::uint16_t, kMaxImageWidth>;
 
 // Depth units become disparity units, in place.
 void ToDisparity(float numerator, int width, std::uint16_t* row) {
@@ -25,7 +25,7 @@ bool IsJump(const DisparityImageParams& params, std::uint16_t here, std::uint16_
 }
 
 // `above`, `here` and `below` are rows as measured; those outside of the image repeat `here`.
-void DropJumps(const DisparityImageParams& params, int width, const Row& above, const Row& here,
+void DropJumps(const DisparityImageParams& params, int width, const DisparityRow& above, const DisparityRow& here,
                const std::uint16_t* below, std::uint16_t* out) {
   for (int x = 0; x < width; ++x) {
     const auto i = static_cast<std::size_t>(x);
@@ -48,7 +48,7 @@ void FillDisparityImage(const DisparityImageParams& params, const RectifiedCamer
   const auto numerator = static_cast<float>(camera.f * camera.baseline * static_cast<double>(DisparityImage::kOne) /
                                             static_cast<double>(depth.unit_m));
   for (int y = 0; y < out.height; ++y) ToDisparity(numerator, out.width, row(y));
-  Row above, here;
+  DisparityRow above, here;
   std::copy_n(row(0), out.width, here.begin());
   for (int y = 0; y < out.height; ++y) {
     above = here;  // of the row before, as measured

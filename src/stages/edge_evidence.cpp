@@ -18,9 +18,9 @@ void CollectPeaks(const EdgeProfile& profile, float threshold, Peaks& peaks) {
   profile.ForEachPeak(threshold, [&](const EdgePeak& peak) { peaks.push_back(peak); });
 }
 
-class Gatherer {
+class EdgeGatherer {
  public:
-  Gatherer(const VerifyParams& params, const VerifyInput& input) : params_(params), in_(input) {}
+  EdgeGatherer(const VerifyParams& params, const VerifyInput& input) : params_(params), in_(input) {}
 
   // Gives the length of all samples, also of those outside of the image, px.
   float Run(const EdgeSamples& samples) {
@@ -98,7 +98,7 @@ class Gatherer {
 
 void GatherEdgeEvidence(const VerifyParams& params, const VerifyInput& input, const PreparedModel& model,
                         const Pose& T_camera_model, const EdgeSamples& samples, EdgeEvidence& out) {
-  Gatherer gatherer(params, input);
+  EdgeGatherer gatherer(params, input);
   const float total_px = gatherer.Run(samples);
   SummarizeEdges(params, model, T_camera_model, gatherer.sums(), total_px, out);
 }

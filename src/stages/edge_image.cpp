@@ -10,7 +10,6 @@
 namespace wirepose {
 namespace {
 
-constexpr int kStride = kMaxImageWidth;
 constexpr int kBorder = 3;
 constexpr std::size_t kLastBucket = 16384 / 16;  // sqrt(2) * 255 * 32 fits below
 

@@ -11,6 +11,8 @@
 
 namespace wirepose {
 
+inline constexpr int kStride = kMaxImageWidth;  // elements from one row of any image plane to the next
+
 struct EdgeImageParams {
   // A ridge pixel's gradient must exceed this multiple of the image's gradient noise ...
   float noise_factor = 2.3F;

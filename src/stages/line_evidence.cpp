@@ -27,16 +27,16 @@ struct VisibleEdge {
   }
 };
 
-struct Sums {
+struct LineSums {
   float outline_px = 0, inner_px = 0;
   float crossings = 0, ends = 0, inner_crossings = 0;
   float along = 0, beyond = 0;  // px
 };
 
-class Gatherer {
+class LineGatherer {
  public:
-  Gatherer(const LineEvidenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
-           const Pose& T_camera_model)
+  LineGatherer(const LineEvidenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
+               const Pose& T_camera_model)
       : params_(params), model_(model), projected_(camera, T_camera_model), towards_(model.view, projected_.Eye()) {}
 
   void Add(std::span<const EdgeSample> samples, std::span<const Segment2> segments) {
@@ -46,7 +46,7 @@ class Gatherer {
     for (const Segment2& segment : segments) Compare(edge, segment);
   }
 
-  [[nodiscard]] const Sums& sums() const { return sums_; }
+  [[nodiscard]] const LineSums& sums() const { return sums_; }
 
  private:
   bool Place(std::span<const EdgeSample> samples, VisibleEdge& edge) const {
@@ -103,7 +103,7 @@ class Gatherer {
   const PreparedModel& model_;
   ProjectedModel projected_;
   FacesTowards towards_;
-  Sums sums_;
+  LineSums sums_;
 };
 
 // Lengths of the segments within the silhouette and of those that it cuts.
@@ -126,7 +126,7 @@ void MeasureTexture(std::span<const Segment2> segments, const SurfaceMap& surfac
 void GatherLineEvidence(const LineEvidenceParams& params, const RectifiedCamera& camera,
                         std::span<const Segment2> segments, const PreparedModel& model, const Pose& T_camera_model,
                         const EdgeSamples& samples, const SurfaceMap& surface, LineEvidence& out) {
-  Gatherer gatherer(params, camera, model, T_camera_model);
+  LineGatherer gatherer(params, camera, model, T_camera_model);
   const std::span<const EdgeSample> all{samples.begin(), samples.end()};
   for (std::size_t first = 0; first < all.size();) {
     std::size_t end = first + 1;
@@ -136,7 +136,7 @@ void GatherLineEvidence(const LineEvidenceParams& params, const RectifiedCamera&
   }
   float within = 0, cut = 0;
   MeasureTexture(segments, surface, within, cut);
-  const Sums& s = gatherer.sums();
+  const LineSums& s = gatherer.sums();
   const float visible_px = s.outline_px + s.inner_px + kPriorPx;
   out.crossing = s.crossings / (s.crossings + s.ends + kPriorSegments);
   out.crossings = s.crossings / (s.outline_px / 100 + 1);

@@ -8,11 +8,11 @@
 namespace wirepose {
 namespace {
 
-constexpr int kRadius = 7;
+constexpr int kWindowRadius = 7;
 constexpr float kGain = 48;
 constexpr float kNoiseFloor = 4;  // grey levels
 
-constexpr int kWindow = 2 * kRadius + 1;
+constexpr int kWindow = 2 * kWindowRadius + 1;
 using PaddedRow = std::array<std::int32_t, kMaxImageWidth + kWindow - 1>;
 
 // Sums of values and squares over the columns of a window that slides down the image, and over the window itself.
@@ -31,23 +31,23 @@ WIREPOSE_VECTOR_KERNEL void Slide(const std::uint8_t* in, const std::uint8_t* ou
   }
 }
 
-// out[x] = sum of columns x - kRadius to x + kRadius, the first and the last one repeated beyond the borders. Sums of
-// two, four and eight neighbours first: fifteen columns in five vector additions.
+// out[x] = sum of columns x - kWindowRadius to x + kWindowRadius, the first and the last one repeated beyond the
+// borders. Sums of two, four and eight neighbours first: fifteen columns in five vector additions.
 inline void SumWindow(const std::array<std::int32_t, kMaxImageWidth>& columns, int width, PaddedRow& a, PaddedRow& b,
                       std::array<std::int32_t, kMaxImageWidth>& out) {
-  static_assert(kRadius == 7);
+  static_assert(kWindowRadius == 7);
   const int padded = width + kWindow - 1;
-  for (int i = 0; i < kRadius; ++i) {
+  for (int i = 0; i < kWindowRadius; ++i) {
     a[static_cast<std::size_t>(i)] = columns[0];
-    a[static_cast<std::size_t>(kRadius + width + i)] = columns[static_cast<std::size_t>(width - 1)];
+    a[static_cast<std::size_t>(kWindowRadius + width + i)] = columns[static_cast<std::size_t>(width - 1)];
   }
-  std::copy(columns.begin(), columns.begin() + width, a.begin() + kRadius);
+  std::copy(columns.begin(), columns.begin() + width, a.begin() + kWindowRadius);
   std::int32_t *p = a.data(), *q = b.data();
-  for (int i = 0; i < width; ++i) out[static_cast<std::size_t>(i)] = -p[i + kRadius];
+  for (int i = 0; i < width; ++i) out[static_cast<std::size_t>(i)] = -p[i + kWindowRadius];
   for (int i = 0; i < padded - 1; ++i) q[i] = p[i] + p[i + 1];
   for (int i = 0; i < padded - 3; ++i) p[i] = q[i] + q[i + 2];
   for (int i = 0; i < padded - 7; ++i) q[i] = p[i] + p[i + 4];
-  for (int i = 0; i < width; ++i) out[static_cast<std::size_t>(i)] += q[i] + q[i + kRadius];
+  for (int i = 0; i < width; ++i) out[static_cast<std::size_t>(i)] += q[i] + q[i + kWindowRadius];
 }
 
 WIREPOSE_VECTOR_KERNEL void NormalizeRow(const std::uint8_t* in, int width, WindowSums& w, std::uint8_t* out) {
@@ -71,9 +71,9 @@ void NormalizeLocally(ImageView image, NormalizedPlane& out) {
   const auto row = [&](int y) { return image.row(std::max(0, std::min(y, image.height - 1))); };
   WindowSums w;
   const std::array<std::uint8_t, kMaxImageWidth> nothing{};
-  for (int y = -kRadius; y <= kRadius; ++y) Slide(row(y), nothing.data(), image.width, w);
+  for (int y = -kWindowRadius; y <= kWindowRadius; ++y) Slide(row(y), nothing.data(), image.width, w);
   for (int y = 0; y < image.height; ++y) {
-    if (y > 0) Slide(row(y + kRadius), row(y - 1 - kRadius), image.width, w);
+    if (y > 0) Slide(row(y + kWindowRadius), row(y - 1 - kWindowRadius), image.width, w);
     NormalizeRow(image.row(y), image.width, w, out.data() + static_cast<std::ptrdiff_t>(y) * kMaxImageWidth);
   }
 }

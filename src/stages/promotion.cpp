@@ -12,8 +12,8 @@ namespace wirepose {
 namespace {
 
 // Lines looked at in one go: where none of them is marked, as almost everywhere, all are passed over.
-constexpr std::size_t kBlock = 8;
-static_assert(kMaxSegments % kBlock == 0);
+constexpr std::size_t kLineBlock = 8;
+static_assert(kMaxSegments % kLineBlock == 0);
 
 // The lines' image ends, number by number.
 struct SegmentEnds {
@@ -109,7 +109,7 @@ class Promoter {
     const std::size_t count = lines_.size();
     MarkNear(ends_, count, p.a, u, max_offset, near_.data());
     for (std::size_t i = 0; i < count; ++i) {
-      while (i % kBlock == 0 && i + kBlock < count && NoneNear(i)) i += kBlock;
+      while (i % kLineBlock == 0 && i + kLineBlock < count && NoneNear(i)) i += kLineBlock;
       if (near_[i] == 0) continue;
       const Line3& line = lines_[i];
       const Segment2& s = line.segment;
@@ -189,8 +189,8 @@ class Promoter {
 
   [[nodiscard]] bool NoneNear(std::size_t block) const {
     std::uint64_t marks;
-    static_assert(sizeof(marks) == kBlock);
-    std::memcpy(&marks, near_.data() + block, kBlock);
+    static_assert(sizeof(marks) == kLineBlock);
+    std::memcpy(&marks, near_.data() + block, kLineBlock);
     return marks == 0;
   }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFixedOne = 65536.0;
 // Far outside every image and inside int32: where a ray points behind the lens model.
-constexpr double kOutside = -16000.0;
+constexpr double kFarOutside = -16000.0;
 
 bool IsRotation(const Matrix3d& R) {
   const double error = (R * R.transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff();
@@ -52,10 +52,10 @@ void FillMap(const CameraIntrinsics& raw, const Matrix3d& R_raw_rectified, const
       const Vector3d ray((i * RectificationMap::kNodeStep - camera.cx) / camera.f,
                          (j * RectificationMap::kNodeStep - camera.cy) / camera.f, 1);
       const Vector3d p = R_raw_rectified * ray;
-      Eigen::Vector2d q(kOutside, kOutside);
+      Eigen::Vector2d q(kFarOutside, kFarOutside);
       if (p.z() > 0.1) q = DistortAndProject(raw, p.x() / p.z(), p.y() / p.z());
       // Also catches NaN: every comparison with it is false.
-      if (!(std::abs(q.x()) < 16000 && std::abs(q.y()) < 16000)) q = {kOutside, kOutside};
+      if (!(std::abs(q.x()) < 16000 && std::abs(q.y()) < 16000)) q = {kFarOutside, kFarOutside};
       map.nodes[static_cast<std::size_t>(j * RectificationMap::kNodesX + i)] = {
           static_cast<std::int32_t>(std::floor(q.x() * kFixedOne + 0.5)),
           static_cast<std::int32_t>(std::floor(q.y() * kFixedOne + 0.5))};

@@ -28,7 +28,7 @@ bool FindEdge(const SmoothPlane& plane, int width, int height, const Vector2& p,
 }
 
 // One found offset with its derivative by the twist.
-struct Row {
+struct OffsetRow {
   Eigen::Matrix<double, 1, 6> J;
   double residual = 0;  // px, image edge minus model edge along the normal
   double weight = 0;
@@ -37,7 +37,7 @@ struct Row {
   Vector2 normal = Vector2::Zero();  // as measured: a thousand rows lie on the stack
 };
 
-using Rows = FixedVector<Row, 2 * kMaxEdgeSamples>;
+using OffsetRows = FixedVector<OffsetRow, 2 * kMaxEdgeSamples>;
 
 class Refiner {
  public:
@@ -106,7 +106,7 @@ class Refiner {
     const Vector2 normal(-tangent.y(), tangent.x());
     float offset = 0;
     if (!FindEdge(plane, c.width, c.height, at, normal, range, params_.min_gradient, offset)) return;
-    Row row;
+    OffsetRow row;
     const auto nx = static_cast<double>(normal.x()), ny = static_cast<double>(normal.y());
     // d(n . u)/dx of the point, then d(point)/d(twist) = [-[p]x, I] for a rotation about the model origin.
     const Vector3d g(nx * c.f * iz, ny * c.f * iz, -(nx * c.f * (x.x() - shift) + ny * c.f * x.y()) * iz * iz);
@@ -154,7 +154,7 @@ class Refiner {
     sigma_ = Scale();
     H_.setZero();
     Vector6d g = Vector6d::Zero();
-    for (Row& row : rows_) {
+    for (OffsetRow& row : rows_) {
       const double r = row.residual / (2 * sigma_);
       const double k = 1 / (1 + r * r);
       row.weight = k * k;
@@ -181,7 +181,7 @@ class Refiner {
     out.T_camera_model = T;
     double sum = 0, weight = 0;
     std::uint32_t inliers = 0;
-    for (const Row& row : rows_) {
+    for (const OffsetRow& row : rows_) {
       sum += row.weight * row.residual * row.residual;
       weight += row.weight;
       if (std::abs(row.residual) < 3 * sigma_) ++inliers;
@@ -217,7 +217,7 @@ class Refiner {
       double weight = 0, mean = 0;
       const std::uint16_t id = rows_[i].edge;
       for (; i < rows_.size() && rows_[i].edge == id; ++i) {
-        const Row& row = rows_[i];
+        const OffsetRow& row = rows_[i];
         const Vector6d g = row.weight * row.J.transpose();
         spread += noise * g * g.transpose();
         edge += g;
@@ -243,7 +243,7 @@ class Refiner {
   const SceneImages& images_;
   const PreparedModel& model_;
   RefineScratch& scratch_;
-  Rows rows_;
+  OffsetRows rows_;
   std::array<std::uint16_t, kMaxModelEdges> found_{}, sampled_{};
   Matrix6d H_ = Matrix6d::Zero();  // its lower triangle: all that LDLT reads
   double sigma_ = 1;

@@ -9,22 +9,21 @@
 namespace wirepose {
 namespace {
 
-constexpr int kStride = kMaxImageWidth;
-constexpr int kRadius = 4;
-constexpr int kPatch = 2 * kRadius + 1;
+constexpr int kPatchRadius = 4;
+constexpr int kPatch = 2 * kPatchRadius + 1;
 constexpr int kPixels = kPatch * kPatch;
-constexpr int kRowStep = 2;  // of the coarse search: every second row of the patch
-constexpr int kCoarsePixels = kPatch * (kRadius + 1);
-constexpr int kMargin = kRadius + 2;  // a patch, its gradient, and a pixel to interpolate
-constexpr std::uint16_t kNoCost = 0xFFFF;
+constexpr int kOffsetStep = 2;  // of the coarse search: every second row of the patch
+constexpr int kCoarsePixels = kPatch * (kPatchRadius + 1);
+constexpr int kMargin = kPatchRadius + 2;  // a patch, its gradient, and a pixel to interpolate
+constexpr std::uint16_t kNoPatchCost = 0xFFFF;
 
 // Smaller eigenvalue of the mean structure tensor around (x, y), at every second pixel; (grey levels per pixel)^2.
 float CornerStrength(const SmoothPlane& smooth, int x, int y) {
   std::int32_t xx = 0, xy = 0, yy = 0;  // 25 squares of at most 12 bits each
   int count = 0;
-  for (int j = -kRadius; j <= kRadius; j += 2) {
+  for (int j = -kPatchRadius; j <= kPatchRadius; j += 2) {
     const std::int16_t* row = smooth.data() + (y + j) * kStride + x;
-    for (int i = -kRadius; i <= kRadius; i += 2) {
+    for (int i = -kPatchRadius; i <= kPatchRadius; i += 2) {
       const int gx = row[i + 1] - row[i - 1];
       const int gy = row[i + kStride] - row[i - kStride];
       xx += gx * gx;
@@ -52,10 +51,10 @@ WIREPOSE_VECTOR_KERNEL void AddRow(const std::uint8_t* left, const std::uint8_t*
     }
   }
 }
-static_assert(kCoarsePixels * 255 < kNoCost, "costs fit 16 bits");
+static_assert(kCoarsePixels * 255 < kNoPatchCost, "costs fit 16 bits");
 
 WIREPOSE_VECTOR_KERNEL std::uint16_t Lowest(const std::uint16_t* cost, int count) {
-  std::uint16_t lowest = kNoCost;
+  std::uint16_t lowest = kNoPatchCost;
   for (int k = 0; k < count; ++k) lowest = lowest < cost[k] ? lowest : cost[k];
   return lowest;
 }
@@ -68,15 +67,15 @@ struct Place {
 // The best place there is, when none elsewhere is nearly as good.
 bool FindPlace(const RowOffsetParams& params, const RowOffsetInput& in, const Corner& corner, RowOffsetScratch& scratch,
                Place& out) {
-  const int x0 = corner.x - kRadius;
+  const int x0 = corner.x - kPatchRadius;
   const int reachable = std::min(kMaxDisparity, x0 - 1);
   if (reachable < 1) return false;
   const auto rows = [&](int r) { return scratch.cost[static_cast<std::size_t>(r + kRowOffsetReach)].data(); };
-  std::uint16_t best = kNoCost;
+  std::uint16_t best = kNoPatchCost;
   for (int r = -kRowOffsetReach; r <= kRowOffsetReach; ++r) {
     std::uint16_t* const cost = rows(r);
     std::fill(cost, cost + reachable, std::uint16_t{0});
-    for (int j = -kRadius; j <= kRadius; j += kRowStep) {
+    for (int j = -kPatchRadius; j <= kPatchRadius; j += kOffsetStep) {
       const std::uint8_t* const left = in.left.data() + (corner.y + j) * kStride + x0;
       AddRow(left, in.right.data() + (corner.y + r + j) * kStride + x0 - (reachable - 1), reachable, cost);
     }
@@ -91,7 +90,7 @@ bool FindPlace(const RowOffsetParams& params, const RowOffsetInput& in, const Co
 
   constexpr int kNear = 2;  // places this near are the same one
   const int at = reachable - 1 - out.disparity;
-  std::uint16_t second = kNoCost;
+  std::uint16_t second = kNoPatchCost;
   for (int r = -kRowOffsetReach; r <= kRowOffsetReach; ++r) {
     const std::uint16_t* const cost = rows(r);
     if (std::abs(r - out.rows) > kNear) {
@@ -130,9 +129,9 @@ bool Resample(const SmoothPlane& smooth, float x, float y, int width, int height
   const int ix = static_cast<int>(x), iy = static_cast<int>(y);
   const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy);
   std::size_t k = 0;
-  for (int j = -kRadius; j <= kRadius; ++j) {
+  for (int j = -kPatchRadius; j <= kPatchRadius; ++j) {
     const std::int16_t* const row = smooth.data() + (iy + j) * kStride + ix;
-    for (int i = -kRadius; i <= kRadius; ++i) {
+    for (int i = -kPatchRadius; i <= kPatchRadius; ++i) {
       const auto at = [&](int offset) { return static_cast<float>(row[i + offset]); };
       const float top = at(0) + fx * (at(1) - at(0));
       const float bottom = at(kStride) + fx * (at(kStride + 1) - at(kStride));
@@ -152,9 +151,9 @@ struct Template {
 
 void MakeTemplate(const SmoothPlane& smooth, const Corner& corner, Template& out) {
   std::size_t k = 0;
-  for (int j = -kRadius; j <= kRadius; ++j) {
+  for (int j = -kPatchRadius; j <= kPatchRadius; ++j) {
     const std::int16_t* const row = smooth.data() + (corner.y + j) * kStride + corner.x;
-    for (int i = -kRadius; i <= kRadius; ++i, ++k) {
+    for (int i = -kPatchRadius; i <= kPatchRadius; ++i, ++k) {
       out.patch.value[k] = static_cast<float>(row[i]);
       out.gx[k] = 0.5F * static_cast<float>(row[i + 1] - row[i - 1]);
       out.gy[k] = 0.5F * static_cast<float>(row[i + kStride] - row[i - kStride]);
@@ -199,9 +198,9 @@ bool RefinePlace(const RowOffsetParams& params, const RowOffsetInput& in, const 
 }
 
 // Patches that reach beyond what the raw images show hold repeated pixels.
-bool Seen(const RectificationMap& map, float x, float y) {
+bool IsSeen(const RectificationMap& map, float x, float y) {
   const auto row = static_cast<std::size_t>(y + 0.5F);
-  for (const std::size_t r : {row - kRadius, row + kRadius}) {
+  for (const std::size_t r : {row - kPatchRadius, row + kPatchRadius}) {
     const RectificationMap::Interval& valid = map.valid[r];
     if (x - kMargin < static_cast<float>(valid.begin) || x + kMargin >= static_cast<float>(valid.end)) return false;
   }
@@ -239,11 +238,11 @@ void MeasureRowOffsets(const RowOffsetParams& params, const RowOffsetInput& inpu
   for (const Corner& corner : corners) {
     const auto cx = static_cast<float>(corner.x), cy = static_cast<float>(corner.y);
     Place place;
-    if (!Seen(input.left_map, cx, cy) || !FindPlace(params, input, corner, scratch, place)) continue;
+    if (!IsSeen(input.left_map, cx, cy) || !FindPlace(params, input, corner, scratch, place)) continue;
     Template left;
     MakeTemplate(input.left_smooth, corner, left);
     float x = cx - static_cast<float>(place.disparity), y = cy + static_cast<float>(place.rows);
-    if (!RefinePlace(params, input, left, x, y) || !Seen(input.right_map, x, y)) continue;
+    if (!RefinePlace(params, input, left, x, y) || !IsSeen(input.right_map, x, y)) continue;
     out.push_back({cx, cy, cx - x, y - cy});
   }
 }

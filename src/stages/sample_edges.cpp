@@ -20,12 +20,12 @@ void PrepareRays(const ModelView& model, const Vector3& eye, FrontTriangle& out)
 }
 
 // Image of a point in the rectified pair.
-struct Seen {
+struct StereoPoint {
   Vector2 left;
   float disparity;
 };
 
-Seen ProjectPoint(const RectifiedCamera& camera, const Vector3& p) {
+StereoPoint ProjectPoint(const RectifiedCamera& camera, const Vector3& p) {
   const auto f = static_cast<float>(camera.f);
   const float z = f / p.z();
   return {{p.x() * z + static_cast<float>(camera.cx), p.y() * z + static_cast<float>(camera.cy)},
@@ -106,19 +106,20 @@ void SampleVisibleEdges(const SampleParams& params, const RectifiedCamera& camer
       if (!model.FacesEye(e, eye)) continue;
       const Vector3 a = R * model.edges[e].a + t, b = R * model.edges[e].b + t;
       if (a.z() < near || b.z() < near) continue;
-      const Seen pa = ProjectPoint(camera, a), pb = ProjectPoint(camera, b);
+      const StereoPoint pa = ProjectPoint(camera, a), pb = ProjectPoint(camera, b);
       const float length = (pb.left - pa.left).norm();
       if (length >= params.min_edge_px) use(e, a, b, pa, pb, length);
     }
   };
   float total = 0;
-  for_each_edge([&](std::size_t, const Vector3&, const Vector3&, const Seen&, const Seen&, float length) {
+  for_each_edge([&](std::size_t, const Vector3&, const Vector3&, const StereoPoint&, const StereoPoint&, float length) {
     total += length + params.step_px;
   });
   const float step = std::max(params.step_px, total / static_cast<float>(kMaxEdgeSamples));
 
   NearTriangles near_edge;  // that may hide a part of the edge at hand
-  for_each_edge([&](std::size_t e, const Vector3& a, const Vector3& b, const Seen& pa, const Seen& pb, float length) {
+  for_each_edge([&](std::size_t e, const Vector3& a, const Vector3& b, const StereoPoint& pa, const StereoPoint& pb,
+                    float length) {
     const int n = std::max(1, static_cast<int>(length / step));
     EdgeSample sample;
     sample.edge = static_cast<std::uint16_t>(e);

@@ -8,7 +8,6 @@
 namespace wirepose {
 namespace {
 
-constexpr int kStride = kMaxImageWidth;
 constexpr int kStripWidth = 7;
 constexpr int kStripOverlap = 1;  // columns of the strip beyond the edge: the edge must be in the strip
 constexpr std::uint16_t kNoCost = 0xFFFF / kMaxStereoRows;  // of one row: outside of the right image
@@ -155,18 +154,18 @@ Slope MakeSlope(const RowSamples& rows, int steps) {
   return slope;
 }
 
-constexpr int kBlock = 16;
+constexpr int kCostBlock = 16;
 using RowPointers = std::array<const std::uint16_t*, kMaxStereoRows>;
 
 // Sums the rows' costs at disparities [0, count), lowers best_at[d] to them, and returns the smallest. In blocks of
 // lanes whose sum needs no memory; the last block overlaps the one before it, which changes no minimum.
 WIREPOSE_VECTOR_KERNEL std::uint16_t SumAlong(const RowPointers& row, int count, std::uint16_t* __restrict sum,
                                               std::uint16_t* __restrict best_at) {
-  std::uint16_t lowest[kBlock];
-  std::fill(lowest, lowest + kBlock, std::uint16_t{0xFFFF});
-  for (int done = 0; done < count; done += kBlock) {
-    const int begin = std::min(done, count - kBlock);
-    for (int k = 0; k < kBlock; ++k) {
+  std::uint16_t lowest[kCostBlock];
+  std::fill(lowest, lowest + kCostBlock, std::uint16_t{0xFFFF});
+  for (int done = 0; done < count; done += kCostBlock) {
+    const int begin = std::min(done, count - kCostBlock);
+    for (int k = 0; k < kCostBlock; ++k) {
       const int d = begin + k;
       const auto value =
           static_cast<std::uint16_t>(row[0][d] + row[1][d] + row[2][d] + row[3][d] + row[4][d] + row[5][d] + row[6][d] +
@@ -176,7 +175,7 @@ WIREPOSE_VECTOR_KERNEL std::uint16_t SumAlong(const RowPointers& row, int count,
       lowest[k] = lowest[k] < value ? lowest[k] : value;
     }
   }
-  return *std::min_element(lowest, lowest + kBlock);
+  return *std::min_element(lowest, lowest + kCostBlock);
 }
 static_assert(kMaxStereoRows == 12, "SumAlong adds twelve rows");
 
@@ -196,7 +195,7 @@ WIREPOSE_VECTOR_KERNEL std::uint16_t LowestBeside(const std::array<std::uint16_t
 
 // Slopes advance such that the ends move by one pixel, up to this many.
 constexpr int kMaxSlope = 12;
-static_assert(kMaxDisparity - 4 * kMaxSlope - 1 >= kBlock, "shifts stay below 2 kMaxSlope, even beyond the ends");
+static_assert(kMaxDisparity - 4 * kMaxSlope - 1 >= kCostBlock, "shifts stay below 2 kMaxSlope, even beyond the ends");
 
 // Stands for rows that a short segment does not have.
 constexpr std::array<std::uint16_t, kMaxDisparity> kNoRow{};

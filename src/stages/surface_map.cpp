@@ -7,7 +7,7 @@ namespace wirepose {
 namespace {
 
 // A vertex in cells, with its disparity; both are affine over a triangle's image.
-struct Corner {
+struct CellCorner {
   float x = 0, y = 0, disparity = 0;
 };
 
@@ -34,7 +34,7 @@ class Rasterizer {
       const ModelFace& face = model_.view.faces[model_.view.triangles[i].face];
       if (!IsTowards(face, eye) || !Corners(i)) continue;
       seen.push_back(static_cast<std::uint16_t>(i));
-      for (const Corner& c : corner_) {
+      for (const CellCorner& c : corner_) {
         low_x = std::min(low_x, c.x), high_x = std::max(high_x, c.x);
         low_y = std::min(low_y, c.y), high_y = std::max(high_y, c.y);
       }
@@ -96,7 +96,7 @@ class Rasterizer {
     }
   }
 
-  static void Cross(const Corner& p, const Corner& q, float y, float& enter, float& leave) {
+  static void Cross(const CellCorner& p, const CellCorner& q, float y, float& enter, float& leave) {
     if ((p.y < y && q.y < y) || (p.y > y && q.y > y)) return;
     const float height = q.y - p.y;
     const float x = height != 0 ? p.x + (y - p.y) / height * (q.x - p.x) : p.x;
@@ -109,7 +109,7 @@ class Rasterizer {
   Matrix3 R_;
   Vector3 t_;
   float f_, cx_, cy_, fb_;
-  std::array<Corner, 3> corner_;
+  std::array<CellCorner, 3> corner_;
 };
 
 }  // namespace

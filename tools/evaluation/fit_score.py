@@ -155,15 +155,14 @@ def number(value):
 def table(booster):
     kind = booster.kind
     lines = ['// Written by tools/evaluation/fit_score.py; do not edit.', f'#include "stages/{kind.header}"', '',
-             'namespace wirepose {', 'namespace {', '', '// clang-format off',
-             f'constexpr std::array<ScoreTree, {len(booster.trees)}> kTrees = {{{{']
+             'namespace wirepose {', '', '// clang-format off', f'const ScoreTable& {kind.function}() {{',
+             f'  static constexpr std::array<ScoreTree, {len(booster.trees)}> kTrees = {{{{']
     for tree in booster.trees:
         splits = ', '.join(f'{{{term}, {number(threshold)}}}' for term, threshold in tree.splits)
         leaves = ', '.join(number(leaf) for leaf in tree.leaves)
-        lines.append(f'  {{{{{{{splits}}}}}, {{{leaves}}}}},')
-    lines += ['}};', '// clang-format on', '', '}  // namespace', '', f'const ScoreTable& {kind.function}() {{',
-              f'  static constexpr ScoreTable kTable{{{number(booster.bias)}, kTrees}};', '  return kTable;', '}', '',
-              '}  // namespace wirepose', '']
+        lines.append(f'    {{{{{{{splits}}}}}, {{{leaves}}}}},')
+    lines += ['  }};', f'  static constexpr ScoreTable kTable{{{number(booster.bias)}, kTrees}};', '  return kTable;', '}',
+              '// clang-format on', '', '}  // namespace wirepose', '']
     return '\n'.join(lines)
 
 
