@@ -1,7 +1,9 @@
 #include "hal/simulated/simulated_camera.h"
 
+#include <array>
 #include <cmath>
 #include <condition_variable>
+#include <cstdio>
 #include <cstring>
 #include <deque>
 #include <fstream>
@@ -14,8 +16,7 @@
 #include "hal/buffer_ring.h"
 #include "hal/dataset/calibration_file.h"
 #include "hal/simulated/feed_faults.h"
-#include "hal/simulated/frame_cache.h"
-#include "sim/random.h"
+#include "hal/simulated/frame_source.h"
 #include "sim/scenario_file.h"
 #include "sim/scenario_video.h"
 #include "sim/suite.h"
@@ -71,11 +72,9 @@ Result<sim::ScenarioSpec, std::string> SpecOf(const SimulatedConfig& config) {
 // Renders ahead. Lives from Open to Close; its thread from Start to Stop.
 class SimulatedCamera::Worker {
  public:
-  Worker(const SimulatedConfig& config, const sim::ScenarioSpec& spec, sim::ScenarioVideo video,
-         std::optional<FrameCache> cache)
-      : config_(config), spec_(spec), video_(std::move(video)), cache_(std::move(cache)) {
-    ring_.Allocate(video_.calibration().width, video_.calibration().height);
-    loop_.resize(config_.loop_frames);
+  Worker(const SimulatedConfig& config, const sim::ScenarioSpec& spec, FrameSource source)
+      : config_(config), spec_(spec), source_(std::move(source)) {
+    ring_.Allocate(source_.calibration().width, source_.calibration().height);
     ready_.reserve(kBuffers + 1);
   }
   Worker(const Worker&) = delete;
@@ -86,9 +85,9 @@ class SimulatedCamera::Worker {
     {
       const std::lock_guard lock(mutex_);
       truths_.clear();
-      last_ = {};
       is_stopping_ = is_over_ = has_failed_ = false;
     }
+    source_.Restart();
     if (!config_.truth_path.empty()) {
       truth_file_ = std::ofstream(config_.truth_path, std::ios::binary | std::ios::trunc);
       if (!truth_file_) return false;
@@ -201,51 +200,13 @@ class SimulatedCamera::Worker {
     return true;
   }
 
-  // From memory when it was kept for the loop, from the cache, or rendered.
-  Result<void, std::string> Make(std::uint64_t sequence, const sim::ShotChange& change, CachedFrame& out) {
-    if (loop_.empty() || !(change == sim::ShotChange{})) {
-      Result<CachedFrame, std::string> made = LoadOrShoot(sequence, change);
-      if (!made) return unexpected(made.error());
-      out = *std::move(made);
-      return {};
-    }
-    std::optional<CachedFrame>& kept = loop_[sequence % loop_.size()];
-    if (!kept) {
-      Result<CachedFrame, std::string> made = LoadOrShoot(sequence % loop_.size(), change);
-      if (!made) return unexpected(made.error());
-      kept = *std::move(made);
-    }
-    out = *kept;
-    return {};
-  }
-
-  Result<CachedFrame, std::string> LoadOrShoot(std::uint64_t sequence, const sim::ShotChange& change) {
-    const bool may_keep = cache_.has_value() && change == sim::ShotChange{};
-    if (may_keep) {
-      if (std::optional<CachedFrame> kept = cache_->Load(sequence)) return *std::move(kept);
-    }
-    sim::StereoShot shot = video_.Shoot(sequence, change);
-    CachedFrame frame{{std::move(shot.left), std::move(shot.right)}, {}};
-    for (const sim::ObjectTruth& object : shot.truth.objects) {
-      frame.objects.push_back({object.obj_id, object.name, object.T_camera_object, object.visib_fract});
-    }
-    if (may_keep) {
-      if (const Result<void, std::string> stored = cache_->Store(sequence, frame); !stored)
-        return unexpected(stored.error());
-    }
-    return frame;
-  }
-
   // False when a file could not be written.
   bool FillBuffer(std::uint32_t buffer, std::uint64_t sequence, const FramePlan& plan) {
-    if (!plan.repeats_last || last_.images.left.pixels.empty()) {
-      StereoImages before;
-      if (!plan.image_faults.empty()) before = last_.images;
-      if (const Result<void, std::string> made = Make(sequence, plan.change, last_); !made) return Fail(made.error());
-      ApplyImageFaults(plan.image_faults, sim::Mix(spec_.seed, sequence), before, last_.images);
-    }
-    CopyImage(last_.images.left, ring_.left(buffer));
-    CopyImage(last_.images.right, ring_.right(buffer));
+    const Result<const CachedFrame*, std::string> made = source_.Make(sequence, plan);
+    if (!made) return Fail(made.error());
+    const CachedFrame& frame = **made;
+    CopyImage(frame.images.left, ring_.left(buffer));
+    CopyImage(frame.images.right, ring_.right(buffer));
     const std::chrono::nanoseconds since_start(std::llround(static_cast<double>(sequence) * 1e9 / spec_.rate_hz));
     Captured captured;
     captured.buffer = buffer;
@@ -256,7 +217,7 @@ class SimulatedCamera::Worker {
     captured.frame.right = ring_.right(buffer);
     if (std::abs(plan.told_lag_s) >= kMaxLagS) captured.frame.status = FrameStatus::kNotSynchronous;
 
-    const SimulatedTruth truth{sequence, captured.frame.capture_time, last_.objects};
+    const SimulatedTruth truth{sequence, captured.frame.capture_time, frame.objects};
     if (truth_file_.is_open() && !(truth_file_ << ToJsonLine(truth)).flush()) {
       return Fail(config_.truth_path.string() + ": truth cannot be written; is the disk full?");
     }
@@ -266,7 +227,7 @@ class SimulatedCamera::Worker {
   // With a cache or a loop, not before `due`: as a camera would.
   bool Publish(const Captured& captured, const SimulatedTruth& truth, std::chrono::steady_clock::time_point due) {
     std::unique_lock lock(mutex_);
-    if (cache_ || !loop_.empty()) changed_.wait_until(lock, due, [&] { return is_stopping_; });
+    if (source_.keeps_frames()) changed_.wait_until(lock, due, [&] { return is_stopping_; });
     truths_.push_back(truth);
     if (truths_.size() > kTruthsKept) truths_.pop_front();
     ready_.push_back({captured});
@@ -292,13 +253,10 @@ class SimulatedCamera::Worker {
 
   const SimulatedConfig config_;
   const sim::ScenarioSpec spec_;
-  const sim::ScenarioVideo video_;
-  const std::optional<FrameCache> cache_;
 
   // The worker thread's while it runs.
+  FrameSource source_;
   std::ofstream truth_file_;
-  CachedFrame last_;                              // as given out, faults included
-  std::vector<std::optional<CachedFrame>> loop_;  // what is given out over and over; empty: no loop
   std::chrono::steady_clock::time_point start_;
 
   std::thread thread_;
@@ -353,7 +311,8 @@ CameraError SimulatedCamera::DoOpen(StereoCalibration& calibration) {
   if (!config_.cache_path.empty()) {
     cache.emplace(config_.cache_path / (sim::ContentHash(*spec, *targets) + "_" + std::to_string(config_.scene)));
   }
-  worker_ = std::make_unique<Worker>(config_, *spec, *std::move(video), std::move(cache));
+  worker_ = std::make_unique<Worker>(config_, *spec,
+                                     FrameSource(*spec, *std::move(video), std::move(cache), config_.loop_frames));
   detail_.reserve(kDetailRoom);  // what a running camera says needs no heap
   detail_.clear();
   return CameraError::kOk;
@@ -371,8 +330,10 @@ Result<StereoCamera::Captured, CameraError> SimulatedCamera::DoAcquire(std::chro
   Result<Captured, CameraError> captured = worker_->Acquire(timeout);
   if (captured) {
     if (captured->frame.status == FrameStatus::kNotSynchronous) {
-      detail_ = "simulated: the right eye was exposed " +
-                std::to_string(captured->frame.right_minus_left.count() / 1000) + " us after the left one";
+      std::array<char, kDetailRoom> text;
+      std::snprintf(text.data(), text.size(), "simulated: the right eye was exposed %lld us after the left one",
+                    static_cast<long long>(captured->frame.right_minus_left.count() / 1000));
+      detail_ = text.data();
     }
     return captured;
   }

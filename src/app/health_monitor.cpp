@@ -17,13 +17,7 @@ void Accumulate(const ListUse& frame, ListUse& total) {
 }
 
 void Accumulate(const RecognitionStatistics& frame, RecognitionStatistics& total) {
-  Accumulate(frame.edge_pixels, total.edge_pixels);
-  Accumulate(frame.left_segments, total.left_segments);
-  Accumulate(frame.lines, total.lines);
-  Accumulate(frame.line_sets, total.line_sets);
-  Accumulate(frame.correspondences, total.correspondences);
-  Accumulate(frame.hypotheses, total.hypotheses);
-  Accumulate(frame.detections, total.detections);
+  for (const RecognitionList& list : kRecognitionLists) Accumulate(frame.*list.use, total.*list.use);
 }
 
 // Both parts on one line, without heap: a camera that is lost shall not cost the vision thread any.

@@ -2,6 +2,7 @@
 #ifndef WIREPOSE_PIPELINE_RECOGNITION_H_
 #define WIREPOSE_PIPELINE_RECOGNITION_H_
 
+#include <array>
 #include <cstdint>
 
 #include "base/fixed_vector.h"
@@ -63,8 +64,27 @@ struct ListUse {
 
 struct RecognitionStatistics {
   ListUse edge_pixels;  // on ridges: of the eye that has more; dropped in both
-  ListUse left_segments, lines, line_sets, correspondences, hypotheses, detections;
+  ListUse left_segments, lines, line_sets, correspondences, hypotheses;
+  ListUse promoted;  // distinct poses of hypotheses, whose line sets are ranked
+  ListUse detections;
 };
+
+// Every list of the statistics by its name in messages and files, in the order of the stages.
+struct RecognitionList {
+  const char* name;
+  ListUse RecognitionStatistics::*use;
+};
+inline constexpr std::array<RecognitionList, 8> kRecognitionLists = {{
+    {"edge_pixels", &RecognitionStatistics::edge_pixels},
+    {"left_segments", &RecognitionStatistics::left_segments},
+    {"lines", &RecognitionStatistics::lines},
+    {"line_sets", &RecognitionStatistics::line_sets},
+    {"correspondences", &RecognitionStatistics::correspondences},
+    {"hypotheses", &RecognitionStatistics::hypotheses},
+    {"promoted", &RecognitionStatistics::promoted},
+    {"detections", &RecognitionStatistics::detections},
+}};
+static_assert(sizeof(RecognitionStatistics) == kRecognitionLists.size() * sizeof(ListUse), "a list is missing above");
 
 struct RecognitionResult {
   FixedVector<Detection, kMaxDetections> detections;  // by falling score

@@ -278,7 +278,9 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   Count(hypotheses_.size(), kMaxHypotheses, hypotheses_.dropped(), result.statistics.hypotheses);
   const auto& hypotheses = hypotheses_.Sorted();
   const PoseScorer scorer(params_.hypotheses.score, scene, model);
-  PromoteSets(params_.promotion, scorer, camera(), model, lines_, {hypotheses.begin(), hypotheses.end()}, sets_);
+  const std::uint32_t dropped =
+      PromoteSets(params_.promotion, scorer, camera(), model, lines_, {hypotheses.begin(), hypotheses.end()}, sets_);
+  Count(sets_.size(), kMaxPromoted, dropped, result.statistics.promoted);
   timer.Done(Stage::kHypotheses);
 
   refined_.clear();

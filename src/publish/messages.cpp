@@ -91,22 +91,10 @@ void FillNativeDetection(const Detection& detection, const ModelLabels& models, 
 }
 
 void FillLists(const RecognitionStatistics& statistics, dds_sequence_wirepose_ListUse& out) {
-  const struct {
-    const char* name;
-    const ListUse& use;
-  } lists[] = {
-      {"edge_pixels", statistics.edge_pixels},
-      {"left_segments", statistics.left_segments},
-      {"lines", statistics.lines},
-      {"line_sets", statistics.line_sets},
-      {"correspondences", statistics.correspondences},
-      {"hypotheses", statistics.hypotheses},
-      {"detections", statistics.detections},
-  };
-  static_assert(std::size(lists) <= kMaxLists);
-  static_assert(sizeof(RecognitionStatistics) == std::size(lists) * sizeof(ListUse), "a list is missing here");
+  static_assert(kRecognitionLists.size() <= kMaxLists);
   out._length = 0;
-  for (const auto& [name, use] : lists) {
+  for (const auto& [name, member] : kRecognitionLists) {
+    const ListUse& use = statistics.*member;
     wirepose_ListUse& entry = out._buffer[out._length++];
     CopyText(name, entry.name);
     entry.used = use.used;

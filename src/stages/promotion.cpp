@@ -291,8 +291,10 @@ struct DistinctPose {
 };
 using DistinctPoses = FixedVector<DistinctPose, kMaxPromoted>;
 
-void FindDistinct(const PromotionParams& params, const PreparedModel& model, std::span<const Hypothesis> hypotheses,
-                  DistinctPoses& out) {
+// Gives the number of hypotheses of other poses than those that `out` has room for.
+std::uint32_t FindDistinct(const PromotionParams& params, const PreparedModel& model,
+                           std::span<const Hypothesis> hypotheses, DistinctPoses& out) {
+  std::uint32_t dropped = 0;
   const float tolerance = params.duplicate_share * model.view.diameter_m;
   for (const Hypothesis& h : hypotheses) {
     if (h.score < params.min_score_share * hypotheses[0].score) break;
@@ -302,9 +304,10 @@ void FindDistinct(const PromotionParams& params, const PreparedModel& model, std
     if (same != out.end()) {
       ++same->count;
     } else if (!out.try_push_back({&h, 1})) {
-      break;
+      ++dropped;
     }
   }
+  return dropped;
 }
 
 // `sets` by falling strength.
@@ -351,12 +354,12 @@ bool IsSamePose(const PreparedModel& model, const Matrix3& R1, const Vector3& t1
   return false;
 }
 
-void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const RectifiedCamera& camera,
-                 const PreparedModel& model, const Lines3& lines, std::span<const Hypothesis> hypotheses,
-                 CorrespondingSets& out) {
+std::uint32_t PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const RectifiedCamera& camera,
+                          const PreparedModel& model, const Lines3& lines, std::span<const Hypothesis> hypotheses,
+                          CorrespondingSets& out) {
   out.clear();
   DistinctPoses distinct;
-  FindDistinct(params, model, hypotheses, distinct);
+  const std::uint32_t dropped = FindDistinct(params, model, hypotheses, distinct);
   KeepBest<CorrespondingSet, kMaxPromoted, StrongerSet> promoted;
   Promoter promoter(params, scorer, camera, model, lines);
   for (const DistinctPose& pose : distinct) {
@@ -368,6 +371,7 @@ void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const 
   // Aligned poses meet again.
   MergeSets(model, promoted.Sorted(), params.aligned_duplicate_share * model.view.diameter_m, out);
   RankSets(out);
+  return dropped;
 }
 
 std::span<const CorrespondingSet> WorthRefining(const PromotionParams& params, const CorrespondingSets& sets) {

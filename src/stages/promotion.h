@@ -2,6 +2,8 @@
 #ifndef WIREPOSE_STAGES_PROMOTION_H_
 #define WIREPOSE_STAGES_PROMOTION_H_
 
+#include <cstdint>
+
 #include "base/fixed_vector.h"
 #include "stages/hypotheses.h"
 #include "stages/set_rank.h"
@@ -46,10 +48,11 @@ using CorrespondingSets = FixedVector<CorrespondingSet, kMaxPromoted>;
 // squares of the lines' image positions and disparities (eq. 10, in the space where the errors are Gaussian). Of
 // aligned poses that meet, the strongest set by score, lines and surfaces stays (the paper's ranking); what remains is
 // ranked by all that is known of a set so far, best first. `hypotheses` best first, of which the first kMaxPromoted
-// poses that come near the best one are promoted. O(hypotheses * promoted + promoted * visible edges * lines).
-void PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const RectifiedCamera& camera,
-                 const PreparedModel& model, const Lines3& lines, std::span<const Hypothesis> hypotheses,
-                 CorrespondingSets& out);
+// poses that come near the best one are promoted; gives the number of such hypotheses that are of yet other poses, for
+// which there was no room. O(hypotheses * promoted + promoted * visible edges * lines).
+std::uint32_t PromoteSets(const PromotionParams& params, const PoseScorer& scorer, const RectifiedCamera& camera,
+                          const PreparedModel& model, const Lines3& lines, std::span<const Hypothesis> hypotheses,
+                          CorrespondingSets& out);
 
 // The sets to adjust: the first kMaxRefined that are probable enough.
 std::span<const CorrespondingSet> WorthRefining(const PromotionParams& params, const CorrespondingSets& sets);

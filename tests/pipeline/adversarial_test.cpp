@@ -41,11 +41,6 @@ class Adversarial : public ::testing::Test {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
   }
 
-  static std::array<ListUse, 7> Lists() {
-    const RecognitionStatistics& s = result_.statistics;
-    return {s.edge_pixels, s.left_segments, s.lines, s.line_sets, s.correspondences, s.hypotheses, s.detections};
-  }
-
   static Recognizer recognizer_;
   static RecognitionResult result_;
   static std::vector<tools::CompiledModel>* models_;
@@ -69,7 +64,8 @@ TEST_F(Adversarial, NoFrameTakesThreeTimesAKitchen) {
       const double time = Time(frame.left.view(), frame.right.view());
       slowest = std::max(slowest, time);
       EXPECT_LT(time, 3 * median) << frame.name;
-      for (const ListUse& list : Lists()) {
+      for (const RecognitionList& named : kRecognitionLists) {
+        const ListUse& list = result_.statistics.*named.use;
         EXPECT_LE(list.used, list.capacity) << frame.name;
         EXPECT_TRUE(list.dropped == 0 || list.used > 0) << frame.name;
       }

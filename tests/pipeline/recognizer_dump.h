@@ -61,9 +61,7 @@ class RecognizerDump {
     }
     const RecognitionStatistics& s = result.statistics;
     text_ += "statistics: used/dropped";
-    for (const ListUse& use : {s.left_segments, s.lines, s.line_sets, s.correspondences, s.hypotheses, s.detections}) {
-      Members(use.used, '/', use.dropped);
-    }
+    for (const RecognitionList& list : kRecognitionLists) Members((s.*list.use).used, '/', (s.*list.use).dropped);
     text_ += result.budget_hit ? " budget hit\n" : "\n";
     return std::move(text_);
   }

@@ -285,8 +285,8 @@ TEST_F(RecognizerTest, StatisticsDescribeTheFrame) {
   EXPECT_EQ(s.left_segments.used, TheRecognizer().left_segments().size());
   EXPECT_EQ(s.lines.used, TheRecognizer().lines().size());
   EXPECT_EQ(s.detections.used, result_.detections.size());
-  for (const ListUse& use :
-       {s.edge_pixels, s.left_segments, s.lines, s.line_sets, s.correspondences, s.hypotheses, s.detections}) {
+  for (const RecognitionList& list : kRecognitionLists) {
+    const ListUse& use = s.*list.use;
     EXPECT_GT(use.capacity, 0U);
     EXPECT_LE(use.used, use.capacity);
   }

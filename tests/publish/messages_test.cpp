@@ -230,7 +230,7 @@ TEST_F(MessagesTest, NativeMessageCarriesEverything) {
 TEST_F(MessagesTest, ListsAreReportedByName) {
   FillMessage(RandomReport(random_, 0), "camera", *recognition_);
   const auto& lists = recognition_->value.lists;
-  ASSERT_EQ(lists._length, 7u);
+  ASSERT_EQ(lists._length, kRecognitionLists.size());
   EXPECT_STREQ(lists._buffer[2].name, "lines");
   EXPECT_EQ(lists._buffer[2].used, 84u);
   EXPECT_EQ(lists._buffer[2].capacity, 256u);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "rendered_scene.h"
 
 namespace wirepose {
@@ -21,6 +23,30 @@ Hypothesis HypothesisOf(const Pose& T, float score = 1) {
 }
 
 Pose PoseOf(const CorrespondingSet& set) { return {set.R.cast<double>(), set.t.cast<double>()}; }
+
+// A model at any pose, with the lines and edges that both eyes see of it.
+class View {
+ public:
+  View(Random& random, const TestModel& model)
+      : T(testing::AnyView(random, *model, testing::TestCamera(), 300)),
+        scene(testing::MakeScene(random, *model, T)),
+        model_(*model),
+        edges_{scene->camera, scene->left, scene->right},
+        scorer_(params_, edges_, model_) {}
+
+  std::uint32_t Promote(std::span<const Hypothesis> hypotheses, CorrespondingSets& sets) const {
+    return PromoteSets({}, scorer_, scene->camera, model_, scene->lines, hypotheses, sets);
+  }
+
+  const Pose T;
+  const std::unique_ptr<testing::IdealScene> scene;
+
+ private:
+  const PreparedModel& model_;
+  const PoseScoreParams params_;
+  const SceneEdges edges_;
+  const PoseScorer scorer_;
+};
 
 bool Same(const PreparedModel& model, const Pose& p, const Pose& q, double tolerance) {
   return IsSamePose(model, p.R.cast<float>(), p.t.cast<float>(), q.R.cast<float>(), q.t.cast<float>(),
@@ -64,13 +90,10 @@ TEST(Promotion, AlignsToAllLines) {
     int promoted = 0, closer = 0, members = 0, true_members = 0;
     double before = 0, after = 0;
     for (int k = 0; k < Cases(40); ++k) {
-      const Pose T = testing::AnyView(random, *model, testing::TestCamera(), 300);
-      const auto scene = testing::MakeScene(random, *model, T);
-      const SceneEdges edges{scene->camera, scene->left, scene->right};
-      const PoseScoreParams params;
-      const PoseScorer scorer(params, edges, *model);
+      const View view(random, model);
+      const Pose& T = view.T;
       const Hypothesis h = HypothesisOf(testing::Shaken(random, T, 0.02, 0.006));
-      PromoteSets({}, scorer, scene->camera, *model, scene->lines, {&h, 1}, *sets);
+      (void)view.Promote({&h, 1}, *sets);
       if (sets->empty()) continue;
       ++promoted;
       const CorrespondingSet& set = sets->front();
@@ -81,9 +104,9 @@ TEST(Promotion, AlignsToAllLines) {
       closer += error_after < error_before ? 1 : 0;
       EXPECT_LE(set.members.size(), set.line_count);
       for (const SetMember& member : set.members) {
-        ASSERT_LT(member.line, scene->lines.size());
+        ASSERT_LT(member.line, view.scene->lines.size());
         ++members;
-        true_members += scene->edge_of_line[member.line] == member.edge ? 1 : 0;
+        true_members += view.scene->edge_of_line[member.line] == member.edge ? 1 : 0;
       }
     }
     printf("%s: %d promoted, %d closer, mean error %.2f -> %.2f mm, %d of %d members right\n", name, promoted, closer,
@@ -103,17 +126,14 @@ TEST(Promotion, RanksTheTruthFirst) {
   int first = 0;
   const int count = Cases(20);
   for (int k = 0; k < count; ++k) {
-    const Pose T = testing::AnyView(random, *model, testing::TestCamera(), 300);
-    const auto scene = testing::MakeScene(random, *model, T);
-    const SceneEdges edges{scene->camera, scene->left, scene->right};
-    const PoseScoreParams params;
-    const PoseScorer scorer(params, edges, *model);
+    const View view(random, model);
+    const Pose& T = view.T;
     std::vector<Hypothesis> hypotheses;
     for (int i = 0; i < 10; ++i)
       hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.3, 0.05), static_cast<float>(30 - i)));
     hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 14));
     hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.01, 0.003), 13));
-    PromoteSets({}, scorer, scene->camera, *model, scene->lines, hypotheses, *sets);
+    EXPECT_EQ(view.Promote(hypotheses, *sets), 0U);
     ASSERT_FALSE(sets->empty());
     const double tolerance = static_cast<double>(PromotionParams{}.duplicate_share * model->view.diameter_m);
     float merged = 0;
@@ -145,14 +165,11 @@ TEST(Promotion, EvidenceSpeaksForTheTruth) {
   SetEvidence right, wrong;
   int rights = 0, wrongs = 0;
   for (int k = 0; k < Cases(40); ++k) {
-    const Pose T = testing::AnyView(random, *model, testing::TestCamera(), 300);
-    const auto scene = testing::MakeScene(random, *model, T);
-    const SceneEdges edges{scene->camera, scene->left, scene->right};
-    const PoseScoreParams params;
-    const PoseScorer scorer(params, edges, *model);
+    const View view(random, model);
+    const Pose& T = view.T;
     std::vector<Hypothesis> hypotheses = {HypothesisOf(testing::Shaken(random, T, 0.003, 0.001), 20)};
     for (int i = 0; i < 30; ++i) hypotheses.push_back(HypothesisOf(testing::Shaken(random, T, 0.1, 0.04), 10));
-    PromoteSets({}, scorer, scene->camera, *model, scene->lines, hypotheses, *sets);
+    EXPECT_EQ(view.Promote(hypotheses, *sets), 0U);
     for (const CorrespondingSet& set : *sets) {
       const bool is_right = testing::CornerError(*model, PoseOf(set), T) < 0.015;
       ++(is_right ? rights : wrongs);
@@ -199,15 +216,35 @@ TEST(Promotion, WorthRefiningIsTheHeadOfTheList) {
   EXPECT_EQ(worth(2), 0U);
 }
 
+// More poses than there is room for: the first ones are promoted, each other hypothesis is counted, copies are not.
+TEST(Promotion, CountsThePosesBeyondItsRoom) {
+  Random random(6);
+  const TestModel model = testing::Load("parcel_box");
+  const View view(random, model);
+  std::vector<Hypothesis> hypotheses(kMaxPromoted - 1, HypothesisOf(view.T, 20));
+  for (std::size_t i = 1; i < hypotheses.size(); ++i) {
+    Pose away = view.T;
+    away.t.x() += 0.1 * static_cast<double>(i);
+    hypotheses[i] = HypothesisOf(away, 20);
+  }
+  const auto sets = std::make_unique<CorrespondingSets>();
+  EXPECT_EQ(view.Promote(hypotheses, *sets), 0U);
+  Pose below = view.T;
+  for (int i = 0; i < 4; ++i) {
+    below.t.y() += 0.1;
+    hypotheses.push_back(HypothesisOf(below, 20));
+    EXPECT_EQ(view.Promote(hypotheses, *sets), static_cast<std::uint32_t>(i));
+    hypotheses.push_back(HypothesisOf(view.T, 20));
+  }
+  ASSERT_FALSE(sets->empty());
+  EXPECT_LT(testing::CornerError(*model, PoseOf(sets->front()), view.T), 0.02);
+}
+
 TEST(Promotion, NoHypothesesNoSets) {
   Random random(4);
   const TestModel model = testing::Load("parcel_box");
-  const auto scene = testing::MakeScene(random, *model, testing::AnyView(random, *model, testing::TestCamera(), 300));
-  const SceneEdges edges{scene->camera, scene->left, scene->right};
-  const PoseScoreParams params;
-  const PoseScorer scorer(params, edges, *model);
   const auto sets = std::make_unique<CorrespondingSets>();
-  PromoteSets({}, scorer, scene->camera, *model, scene->lines, {}, *sets);
+  EXPECT_EQ(View(random, model).Promote({}, *sets), 0U);
   EXPECT_TRUE(sets->empty());
 }
 

@@ -18,8 +18,8 @@ void Serialize(const RecognitionResult& result, Sink& sink) {
     for (const PoseMode& mode : d.modes) sink.Add(mode.T_camera_model, mode.weight);
   }
   const RecognitionStatistics& s = result.statistics;
-  for (const ListUse& list :
-       {s.edge_pixels, s.left_segments, s.lines, s.line_sets, s.correspondences, s.hypotheses, s.detections}) {
+  for (const RecognitionList& named : kRecognitionLists) {
+    const ListUse& list = s.*named.use;
     sink.Add(list.used, list.capacity, list.dropped);
   }
   sink.Add(result.budget_hit);

@@ -11,20 +11,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kMsPerSecond = 1000;
 
-struct NamedList {
-  const char* name;
-  ListUse RecognitionStatistics::*use;
-};
-constexpr NamedList kLists[] = {
-    {"edge_pixels", &RecognitionStatistics::edge_pixels},
-    {"left_segments", &RecognitionStatistics::left_segments},
-    {"lines", &RecognitionStatistics::lines},
-    {"line_sets", &RecognitionStatistics::line_sets},
-    {"correspondences", &RecognitionStatistics::correspondences},
-    {"hypotheses", &RecognitionStatistics::hypotheses},
-    {"detections", &RecognitionStatistics::detections},
-};
-
 Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 Json Spread(const std::vector<double>& values) {
@@ -56,7 +42,7 @@ Json StagesToJson(const std::vector<FrameRecord>& frames) {
 
 Json ListsToJson(const std::vector<FrameRecord>& frames) {
   Json json;
-  for (const auto& [name, use] : kLists) {
+  for (const auto& [name, use] : kRecognitionLists) {
     std::uint32_t capacity = 0, high_water = 0;
     std::uint64_t dropped = 0;
     std::vector<double> used;
@@ -81,7 +67,7 @@ Json FrameToJson(const FrameRecord& f) {
   for (std::size_t s = 0; s < kStageCount; ++s) {
     json["stages_ms"][StageName(static_cast<Stage>(s))] = f.times.stages[s].wall * kMsPerSecond;
   }
-  for (const auto& [name, use] : kLists) {
+  for (const auto& [name, use] : kRecognitionLists) {
     json["lists"][name] = {{"used", (f.statistics.*use).used}, {"dropped", (f.statistics.*use).dropped}};
   }
   return json;
