@@ -175,7 +175,7 @@ TEST_F(WireTest, RecognitionArrivesWhole) {
     EXPECT_EQ(std::memcmp(a.covariance, b.covariance, sizeof a.covariance), 0);
     ASSERT_EQ(a.modes._length, b.modes._length);
   }
-  EXPECT_EQ(received->value.lists._length, 7u);
+  EXPECT_EQ(received->value.lists._length, kRecognitionLists.size());
 }
 
 TEST_F(WireTest, WhoComesLateGetsTheLastHealth) {
