@@ -8,7 +8,8 @@
 #include <sstream>
 #include <vector>
 
-#include "hal/dataset/checks.h"
+#include "geometry/rotation.h"
+#include "hal/dataset/malformed.h"
 
 namespace wirepose::dataset {
 namespace {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "geometry/rotation.h"
 #include "hal/dataset/json_file.h"
 
 namespace wirepose::dataset {

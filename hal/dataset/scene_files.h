@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "hal/dataset/checks.h"
 #include "hal/dataset/dataset.h"
+#include "hal/dataset/malformed.h"
 
 namespace wirepose::dataset {
 

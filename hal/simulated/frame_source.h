@@ -25,7 +25,7 @@ class FrameSource {
 
   [[nodiscard]] const StereoCalibration& calibration() const { return video_.calibration(); }
 
-  // Frames are not rendered for the first time on each pass, so that they can be had at the camera's pace.
+  // True when frames may come faster than they are rendered: they have to be held back to the camera's pace.
   [[nodiscard]] bool keeps_frames() const { return cache_.has_value() || !loop_.empty(); }
 
   // Forgets the frame before: a stream begins.

@@ -65,7 +65,7 @@ struct ListUse {
 struct RecognitionStatistics {
   ListUse edge_pixels;  // on ridges: of the eye that has more; dropped in both
   ListUse left_segments, lines, line_sets, correspondences, hypotheses;
-  ListUse promoted;  // distinct poses of hypotheses, whose line sets are ranked
+  ListUse promoted;  // used: line sets that are ranked; dropped: hypotheses of poses beyond those promoted
   ListUse detections;
 };
 

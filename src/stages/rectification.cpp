@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/simd.h"
+#include "geometry/rotation.h"
 
 namespace wirepose {
 namespace {
@@ -11,11 +12,6 @@ namespace {
 constexpr double kFixedOne = 65536.0;
 // Far outside every image and inside int32: where a ray points behind the lens model.
 constexpr double kFarOutside = -16000.0;
-
-bool IsRotation(const Matrix3d& R) {
-  const double error = (R * R.transpose() - Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  return error < 1e-3 && R.determinant() > 0;  // also false for NaN
-}
 
 // The rotation whose square is R: its quaternion is the normalised sum of R's and the identity's.
 Matrix3d HalfRotation(const Matrix3d& R) {
