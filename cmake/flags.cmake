@@ -45,7 +45,7 @@ endif()
 
 # Most of a source's time at the compiler is Eigen's: with CMAKE_UNITY_BUILD, which the presets of optimised Linux builds
 # set, rooms are compiled several sources at a time.
-set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
 
 # For code that runs once a command, like the reading of its options: optimising it further takes longer than it saves.
 # Comes after wirepose_warnings: at -O1 GCC 12 sees null pointers in libstdc++'s std::string.

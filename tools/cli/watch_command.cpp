@@ -30,7 +30,6 @@ struct WatchOptions {
   double timeout_s = 10;
 };
 
-using Seconds = std::chrono::duration<double>;
 using Clock = std::chrono::steady_clock;
 
 // A person or a test reads this: waking 200 times a second is soon enough and needs no wait set.
@@ -124,7 +123,7 @@ void PrintMessages(const WatchOptions& options) {
     }
     const Clock::time_point now = Clock::now();
     if (printed > 0) last = now;
-    if (options.timeout_s > 0 && Seconds(now - last).count() > options.timeout_s) {
+    if (options.timeout_s > 0 && std::chrono::duration<double>(now - last).count() > options.timeout_s) {
       FailForSilence(options, printers.front()->Events().incompatible);
     }
     if (printed == 0) dds_sleepfor(kPause);

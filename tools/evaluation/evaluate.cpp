@@ -16,8 +16,6 @@ namespace {
 using Error = unexpected<std::string>;
 using Outcome = Result<void, std::string>;
 
-constexpr double kMmPerMetre = 1000;
-
 // The robot's recognizer is static, and so is this one: same object, same memory.
 Recognizer& TheRecognizer() {
   static Recognizer recognizer;

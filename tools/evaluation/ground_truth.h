@@ -15,6 +15,8 @@
 
 namespace wirepose::evaluation {
 
+inline constexpr double kMmPerMetre = 1000;
+
 // A rigid motion in BOP's units: p_target = R * p_source + t_mm, millimetres on both sides.
 struct RigidMm {
   Matrix3d R = Matrix3d::Identity();

@@ -15,8 +15,6 @@ namespace fs = std::filesystem;
 using InputJson = nlohmann::json;
 using Outcome = Result<void, std::string>;
 
-constexpr double kMmPerMetre = 1000;
-
 ObjectTruth FromModel(const ModelView& model) {
   ObjectTruth object;
   object.diameter_mm = static_cast<double>(model.diameter_m) * kMmPerMetre;
