@@ -87,7 +87,7 @@ struct RecognizerParams {
   HypothesisParams hypotheses;
   PromotionParams promotion;
   RefineParams refine{.iterations = 4, .samples = {.step_px = 14}};  // of candidates: near enough to be judged
-  RefineParams polish{.line_range_px = 8};  // of what is reported: edges have found their lines
+  RefineParams polish;                                               // of what is reported
   VerifyParams verify;
   SelectParams select;
   AmbiguityParams ambiguity;

@@ -3,12 +3,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
-#include "stages/edge_line.h"
+#include "stages/edge_profile.h"
 
 namespace wirepose {
 namespace {
+
+// Signed distance along `normal` to the most plausible edge near `p`: strong and close. False when there is none.
+bool FindEdge(const SmoothPlane& plane, int width, int height, const Vector2& p, const Vector2& normal, int range,
+              float min_gradient, float& offset) {
+  EdgeProfile profile;
+  if (!profile.Read(plane, width, height, p, normal, range)) return false;
+  const float threshold = min_gradient * kGradientOne;
+  float best = 0;
+  profile.ForEachPeak(threshold, [&](const EdgePeak& peak) {
+    // Strength saturates: beyond some contrast nearness decides.
+    const float score = std::min(std::abs(peak.gradient), 8.0F * threshold) *
+                        (1 - 0.7F * std::abs(peak.offset_px) / static_cast<float>(range + 1));
+    if (score <= best) return;
+    best = score;
+    offset = peak.offset_px;
+  });
+  return best > 0;
+}
 
 // One found offset with its derivative by the twist.
 struct OffsetRow {
@@ -66,90 +83,41 @@ class Refiner {
     rows_.clear();
     found_.fill(0);
     sampled_.fill(0);
-    const EdgeSamples& samples = scratch_.samples;
-    for (std::size_t first = 0; first < samples.size();) {
-      std::size_t end = first;
-      while (end < samples.size() && samples[end].edge == samples[first].edge) ++end;
-      const std::span<const EdgeSample> edge(&samples[first], end - first);
-      MeasureEdge(T, edge, {images_.left, 0, 0}, range);
-      if (images_.camera.has_right_image) MeasureEdge(T, edge, {images_.right, 1, images_.camera.baseline}, range);
-      first = end;
+    for (const EdgeSample& s : scratch_.samples) {
+      const Vector3d p = T.R * s.point.cast<double>();
+      const Vector3d x = p + T.t;
+      MeasureIn(images_.left, 0, s.tangent, p, x, range, s.edge);
+      if (!images_.camera.has_right_image) continue;
+      MeasureIn(images_.right, images_.camera.baseline, s.tangent_right, p, x, range, s.edge);
     }
   }
 
-  struct Eye {
-    const SmoothPlane& plane;
-    std::uint8_t image;
-    double shift;  // how far the camera stands to the right of the left one, m
-
-    [[nodiscard]] Vector2 NormalOf(const EdgeSample& s) const {
-      const Vector2& tangent = image == 0 ? s.tangent : s.tangent_right;
-      return {-tangent.y(), tangent.x()};
-    }
-  };
-
-  void MeasureEdge(const Pose& T, std::span<const EdgeSample> edge, const Eye& eye, int range) {
-    CollectPeaks(T, edge, eye, range);
-    const EdgePeaks& peaks = scratch_.peaks;
-    const float threshold = params_.min_gradient * kGradientOne;
-    const bool together = static_cast<float>(range) > params_.line_range_px;
-    const EdgeLine line = together ? FindEdgeLine(params_.line, peaks, range, threshold) : EdgeLine{};
-    const float reach = together ? params_.line.tolerance_px : static_cast<float>(range);
-    const float part = peaks.size() > 1 ? 1 / static_cast<float>(peaks.size() - 1) : 0.0F;
-    for (std::size_t k = 0; k < peaks.size(); ++k) {
-      const float at = line.At(static_cast<float>(k) * part);
-      float best = 0, offset = 0;
-      for (const EdgePeak& peak : peaks[k].peaks) {
-        const bool other = together && (peak.gradient > 0) != line.brightens;
-        const float score = PeakScore(peak, at, reach, threshold) * (other ? params_.line.other_peak : 1);
-        if (score <= best) continue;
-        best = score;
-        offset = peak.offset_px;
-      }
-      if (best > 0) AddRow(T, edge[peaks[k].sample], eye, offset);
-    }
-  }
-
-  void CollectPeaks(const Pose& T, std::span<const EdgeSample> edge, const Eye& eye, int range) {
+  // `shift`: how far the camera stands to the right of the left one, m.
+  void MeasureIn(const SmoothPlane& plane, double shift, const Vector2& tangent, const Vector3d& p, const Vector3d& x,
+                 int range, std::uint16_t edge) {
     const RectifiedCamera& c = images_.camera;
-    EdgePeaks& out = scratch_.peaks;
-    out.clear();
-    for (std::size_t i = 0; i < edge.size(); ++i) {
-      const Vector3d x = T.R * edge[i].point.cast<double>() + T.t;
-      const double iz = 1 / x.z();
-      const Vector2 at(static_cast<float>(c.f * (x.x() - eye.shift) * iz + c.cx),
-                       static_cast<float>(c.f * x.y() * iz + c.cy));
-      if (!(at.x() > 2 && at.y() > 2 && at.x() < static_cast<float>(c.width - 3) &&
-            at.y() < static_cast<float>(c.height - 3)))
-        continue;
-      ++sampled_[edge[i].edge];
-      EdgeProfile profile;
-      if (!profile.Read(eye.plane, c.width, c.height, at, eye.NormalOf(edge[i]), range)) continue;
-      out.resize(out.size() + 1);
-      SamplePeaks& sample = out.back();
-      sample.peaks.clear();
-      sample.sample = static_cast<std::uint16_t>(i);
-      profile.ForEachPeak(params_.min_gradient * kGradientOne, [&](const EdgePeak& peak) { sample.Add(peak); });
-    }
-  }
-
-  void AddRow(const Pose& T, const EdgeSample& s, const Eye& eye, float offset) {
-    const RectifiedCamera& c = images_.camera;
-    const Vector3d p = T.R * s.point.cast<double>();
-    const Vector3d x = p + T.t;
     const double iz = 1 / x.z();
+    const Vector2 at(static_cast<float>(c.f * (x.x() - shift) * iz + c.cx),
+                     static_cast<float>(c.f * x.y() * iz + c.cy));
+    if (!(at.x() > 2 && at.y() > 2 && at.x() < static_cast<float>(c.width - 3) &&
+          at.y() < static_cast<float>(c.height - 3)))
+      return;
+    ++sampled_[edge];
+    const Vector2 normal(-tangent.y(), tangent.x());
+    float offset = 0;
+    if (!FindEdge(plane, c.width, c.height, at, normal, range, params_.min_gradient, offset)) return;
     OffsetRow row;
-    row.normal = eye.NormalOf(s);
-    const auto nx = static_cast<double>(row.normal.x()), ny = static_cast<double>(row.normal.y());
+    const auto nx = static_cast<double>(normal.x()), ny = static_cast<double>(normal.y());
     // d(n . u)/dx of the point, then d(point)/d(twist) = [-[p]x, I] for a rotation about the model origin.
-    const Vector3d g(nx * c.f * iz, ny * c.f * iz, -(nx * c.f * (x.x() - eye.shift) + ny * c.f * x.y()) * iz * iz);
+    const Vector3d g(nx * c.f * iz, ny * c.f * iz, -(nx * c.f * (x.x() - shift) + ny * c.f * x.y()) * iz * iz);
     row.J.head<3>() = p.cross(g).transpose();
     row.J.tail<3>() = g.transpose();
     row.residual = static_cast<double>(offset);
-    row.edge = s.edge;
-    row.image = eye.image;
+    row.edge = edge;
+    row.image = shift > 0 ? 1 : 0;
+    row.normal = normal;
     rows_.push_back(row);
-    ++found_[s.edge];
+    ++found_[edge];
   }
 
   void DropUnqualified() {

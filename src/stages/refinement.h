@@ -3,7 +3,6 @@
 #define WIREPOSE_STAGES_REFINEMENT_H_
 
 #include "stages/edge_image.h"
-#include "stages/edge_line.h"
 #include "stages/sample_edges.h"
 #include "stages/surface_fit.h"
 
@@ -14,8 +13,6 @@ struct RefineParams {
   SampleParams samples{.step_px = 8};
   float first_range_px = 8;  // 1D search along the edge normal; shrinks to last_range_px
   float last_range_px = 3;
-  float line_range_px = 5;   // while the search is wider, edges find their lines as a whole
-  EdgeLineParams line{};
   float min_gradient = 1.0F;         // grey levels per pixel: weaker edges are not followed
   float min_qualified_share = 0.4F;  // an edge with less support than this does not pull in the last iterations
   float max_rms_px = 1.25F;          // what fits worse after all iterations is no fit
@@ -36,7 +33,6 @@ struct SceneImages {
 
 struct RefineScratch {
   EdgeSamples samples;
-  EdgePeaks peaks;
   FrontTriangles front;
   SurfaceSamples surface_samples;
   SurfaceRows surface_rows;
@@ -52,7 +48,7 @@ struct RefinedPose {
 };
 
 // Robust Gauss-Newton on SE(3). The closest image feature of eq. 11 is searched along the normal of the projected edge
-// (RAPiD: Harris & Stennett 1990) in both images, at first near the line that most samples of the edge agree on; all offsets enter one 6x6 normal matrix with Geman-McClure weights.
+// (RAPiD: Harris & Stennett 1990) in both images; all offsets enter one 6x6 normal matrix with Geman-McClure weights.
 // The search range shrinks from iteration to iteration; hidden lines are found at the start and anew half way. Only
 // qualified features count at the end: edges of which a good share was found. With a disparity map the visible faces
 // are drawn onto the measured surfaces by the same steps (surface_fit.h). The covariance is the sandwich estimate for
