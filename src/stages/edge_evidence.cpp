@@ -28,7 +28,6 @@ class EdgeGatherer {
     std::size_t edge = 0;
     for (const EdgeSample& s : samples) {
       if (s.edge != edge || piece_.count() == params_.piece_samples) ClosePiece(edge);
-      if (s.edge != edge) CloseEdge(edge);
       edge = s.edge;
       total_px += s.weight_px;
       if (!in_.left_edges.Contains(s.left.x(), s.left.y())) continue;
@@ -36,7 +35,6 @@ class EdgeGatherer {
       Test(s, sums_[edge]);
     }
     ClosePiece(edge);
-    CloseEdge(edge);
     return total_px;
   }
 
@@ -45,15 +43,7 @@ class EdgeGatherer {
  private:
   void ClosePiece(std::size_t edge) {
     sums_[edge].Add(piece_, params_.noise_floor);
-    whole_.Add(piece_);
     piece_ = {};
-  }
-
-  // Noise averages out over the samples, down to what is no noise.
-  void CloseEdge(std::size_t edge) {
-    const auto pieces = static_cast<float>(whole_.count()) / static_cast<float>(params_.piece_samples);
-    sums_[edge].AddWhole(whole_, params_.noise_floor / std::sqrt(std::clamp(pieces, 1.0F, params_.max_pieces)));
-    whole_ = {};
   }
 
   // Do both images show an edge here (the left one alone where the right image does not reach)? And beside it?
@@ -100,7 +90,7 @@ class EdgeGatherer {
   const VerifyInput& in_;
   EdgeProfile left_, right_;
   Peaks left_peaks_, right_peaks_;
-  EdgePiece piece_, whole_;
+  EdgePiece piece_;
   std::array<EdgeSums, kMaxModelEdges> sums_{};
 };
 

@@ -26,7 +26,6 @@ class Summary {
 
   void Add(std::size_t edge, const EdgeSums& e) {
     all_.Add(e);
-    whole_clear_ += 2 * e.whole > e.piece_px ? e.piece_px : 0.0F;
     for (const std::uint16_t face : model_.view.edges[edge].face) {
       if (!towards_.Has(face)) continue;
       faces_[face].samples += e.samples;
@@ -58,10 +57,6 @@ class Summary {
     out.distinct = Share(all_.distinct, all_.piece_px);
     out.clear = Share(all_.clear, all_.piece_px);
     out.dimmest_edge = dimmest_;
-    out.whole_distinct = Share(all_.whole, all_.piece_px);
-    out.whole_clear = Share(whole_clear_, all_.piece_px);
-    out.faintest_edge = faintest_;
-    out.whole_outline = Share(outline_.whole, outline_.piece_px);
     out.outline = Share(outline_.hits, outline_.samples);
     out.outline_distinct = Share(outline_.distinct, outline_.piece_px);
     // A single face has no inner edges: they neither help nor harm.
@@ -80,7 +75,6 @@ class Summary {
     weak_edges_ += support < kWeak ? 1.0F : 0.0F;
     weakest_ = std::min(weakest_, support);
     dimmest_ = std::min(dimmest_, Share(e.distinct, e.piece_px));
-    faintest_ = std::min(faintest_, Share(e.whole, e.piece_px));
     const std::array<bool, 2> held = {e.first.held(), e.last().held()};
     for (std::size_t end = 0; end < 2; ++end) {
       CornerSums& corner = corners_[model_.view.edges[edge].vertex[end]];
@@ -123,7 +117,6 @@ class Summary {
   EdgeSums all_, outline_, inner_;
   float variance_ = 0, spread_hits_ = 0;
   float edges_ = 0, full_edges_ = 0, weak_edges_ = 0, ends_ = 0, weakest_ = 1, dimmest_ = 1;
-  float whole_clear_ = 0, faintest_ = 1;
   std::array<CornerSums, kMaxModelVertices> corners_{};
   std::array<FaceSums, kMaxModelFaces> faces_{};
 };

@@ -27,12 +27,6 @@ class EdgePiece {
     ++right_count_;
   }
 
-  void Add(const EdgePiece& other) {
-    for (std::size_t i = 0; i < left_.size(); ++i) left_[i] += other.left_[i], right_[i] += other.right_[i];
-    left_count_ += other.left_count_, right_count_ += other.right_count_;
-    length_px_ += other.length_px_;
-  }
-
   [[nodiscard]] int count() const { return left_count_; }
   [[nodiscard]] float length_px() const { return length_px_; }
 
@@ -95,7 +89,6 @@ struct EdgeSums {
   // Of the hits: products of the difference of both images' offsets and the part of a disparity that it would show.
   float parallax_squared = 0, parallax_across = 0, across_squared = 0;
   float piece_px = 0, distinct = 0, clear = 0;  // of averaged pieces, weighted by their length
-  float whole = 0;                              // distinctness of the whole edge's profile, times its length
   EndSums first;                                // the samples next to the edge's first end
   std::uint32_t recent = 0;                     // bit k: the sample k before the newest was a hit
 
@@ -123,9 +116,6 @@ struct EdgeSums {
     distinct += piece.length_px() * distinctness;
     clear += distinctness > 0.5F ? piece.length_px() : 0.0F;
   }
-  void AddWhole(const EdgePiece& edge, float noise_floor) {
-    if (edge.count() > 0) whole += edge.length_px() * edge.Distinctness(noise_floor);
-  }
   [[nodiscard]] EndSums last() const {
     constexpr std::uint32_t kMask = (1U << EndSums::kSamples) - 1;
     return {std::min(EndSums::kSamples, static_cast<int>(samples)), std::popcount(recent & kMask)};
@@ -136,7 +126,6 @@ struct EdgeSums {
     parallax_across += other.parallax_across, across_squared += other.across_squared;
     chances += other.chances, chance_hits += other.chance_hits;
     length_px += other.length_px, piece_px += other.piece_px, distinct += other.distinct, clear += other.clear;
-    whole += other.whole;
   }
 };
 

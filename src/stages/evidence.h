@@ -23,7 +23,6 @@ struct VerifyParams {
   GroundEvidenceParams ground;
   int piece_samples = 5;           // neighbouring samples of an edge whose profiles are averaged
   float noise_floor = 0.6F;        // grey levels per pixel that an averaged profile may show of nothing
-  float max_pieces = 9;            // beyond this many a longer edge's profile is taken to be no less noisy
   float max_offset_px = 2.2F;      // of a supporting image edge from the model edge, in each image ...
   float max_difference_px = 4.0F;  // ... and between both images
   float sharp_offset_px = 0.8F;    // support this close is sharp: refinement brings a true pose that near
@@ -47,10 +46,6 @@ struct EdgeEvidence {
   float distinct = 0;          // how much averaged edges stand out from what is beside them, in both images
   float clear = 0;             // share of the length where they stand out by more than half
   float dimmest_edge = 0;      // lowest distinctness of an edge
-  float whole_distinct = 0;    // how much the averages of whole edges stand out: noise hides shorter pieces
-  float whole_clear = 0;       // share of the length of edges that stand out by more than half
-  float faintest_edge = 0;     // lowest distinctness of a whole edge
-  float whole_outline = 0;     // how much whole edges stand out behind which the background begins
   float outline = 0;           // support of the edges behind which the background begins
   float outline_distinct = 0;  // and how much they stand out
   float inner_distinct = 0;    // how much the edges between two visible faces stand out
@@ -73,7 +68,7 @@ struct Evidence {
   GroundEvidence ground;    // of the disparity map, around what the object may stand on
 };
 
-inline constexpr std::size_t kEvidenceTerms = 47;
+inline constexpr std::size_t kEvidenceTerms = 43;
 using EvidenceTerms = std::array<float, kEvidenceTerms>;
 
 // The terms in a fixed order, as the score reads them, and their names in that order.

@@ -181,46 +181,6 @@ TEST_F(VerificationTest, DistinctEdges) {
   EXPECT_GE(beaten, count - 1);
 }
 
-// Noise that hides pieces of a faint edge averages out over all of it, and seldom makes an edge where there is none.
-TEST(WholeEdges, StandOutOfNoiseThatHidesTheirPieces) {
-  Random random(14);
-  const auto shoot = [&] {
-    return testing::FindAll(testing::Paint(
-        320, 240, [&](int x, int) { return 100 + (x < 160 ? 0 : 2.5) + 9 * testing::Gaussian(random); }));
-  };
-  const VerifyParams params;
-  const auto sums_at = [&](const SmoothPlane& left, const SmoothPlane& right, float x) {
-    EdgeSums sums;
-    EdgePiece whole;
-    for (int first = 20; first < 220; first += 20) {
-      EdgePiece piece;
-      for (int y = first; y < first + 20; y += 4) {
-        EdgeProfile l, r;
-        const Vector2 p(x, static_cast<float>(y));
-        if (!l.Read(left, 320, 240, p, {1, 0}, kEdgeRange) || !r.Read(right, 320, 240, p, {1, 0}, kEdgeRange)) continue;
-        piece.Add(l, &r, 4);
-      }
-      sums.Add(piece, params.noise_floor);
-      whole.Add(piece);
-    }
-    sums.AddWhole(whole, params.noise_floor / std::sqrt(params.max_pieces));
-    return sums;
-  };
-  const int count = Cases(20);
-  int hidden = 0, found = 0, invented = 0;
-  for (int k = 0; k < count; ++k) {
-    const auto left = shoot(), right = shoot();
-    const EdgeSums edge = sums_at(left->smooth, right->smooth, 159.5F), none = sums_at(left->smooth, right->smooth, 80);
-    EXPECT_FLOAT_EQ(edge.piece_px, 200);
-    hidden += edge.distinct < 0.5F * edge.piece_px ? 1 : 0;
-    found += edge.whole > 0.5F * edge.piece_px ? 1 : 0;
-    invented += none.whole > 0.5F * none.piece_px ? 1 : 0;
-  }
-  EXPECT_GE(hidden, count - 1);
-  EXPECT_GE(found, count - 1);
-  EXPECT_LE(invented, count / 4);
-}
-
 TEST_F(VerificationTest, SurfacesOfTheSceneAgree) {
   Random random(10);
   const Pose T = testing::GoodView(random, *model_);
@@ -309,8 +269,7 @@ TEST_F(VerificationTest, AnyPoseGivesFiniteEvidence) {
     const EdgeEvidence& edges = e.edges;
     for (const float share :
          {edges.inside, edges.support, edges.chance, edges.sharp, edges.sharp_of_support, edges.full_edges,
-          edges.weakest_edge, edges.distinct, edges.clear, edges.dimmest_edge, edges.whole_distinct, edges.whole_clear,
-          edges.faintest_edge, edges.whole_outline, edges.overrun, edges.crossed,
+          edges.weakest_edge, edges.distinct, edges.clear, edges.dimmest_edge, edges.overrun, edges.crossed,
           e.lines.crossing, e.lines.contained, e.hidden, e.surface.on, e.surface.on + e.surface.through}) {
       EXPECT_TRUE(share >= 0 && share <= 1.001F) << share;
     }
