@@ -294,8 +294,14 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   RefinePriors(m);
   timer.Done(Stage::kRefine);
 
+  for (Candidate& candidate : refined_) Judge(candidate);
+  timer.Done(Stage::kVerify);
   for (Candidate& candidate : refined_) {
-    Judge(candidate);
+    if (IsWorthPolishing(candidate)) Polish(candidate);
+  }
+  timer.Done(Stage::kRefine);
+  for (Candidate& candidate : refined_) {
+    if (IsWorthPolishing(candidate)) Judge(candidate);
     candidates_.Push(candidate);
   }
   timer.Done(Stage::kVerify);
@@ -338,7 +344,8 @@ void Recognizer::Judge(Candidate& candidate) {
   candidate.score = ScoreOf(DefaultScoreTable(), TermsOf(candidate.evidence));
 }
 
-// The last of the adjustment, with more samples and iterations; what it cannot improve stays.
+// The last of the adjustment, with more samples and iterations: right poses and others differ more when they lie where
+// their edges are. What it cannot improve stays.
 void Recognizer::Polish(Candidate& candidate) {
   RefinedPose polished;
   RefinePose(params_.polish, ImagesFor(params_.polish), models_[candidate.model], candidate.pose.T_camera_model,

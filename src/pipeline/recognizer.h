@@ -87,7 +87,8 @@ struct RecognizerParams {
   HypothesisParams hypotheses;
   PromotionParams promotion;
   RefineParams refine{.iterations = 4, .samples = {.step_px = 14}};  // of candidates: near enough to be judged
-  RefineParams polish;                                               // of what is reported
+  float min_polish_score = 0.02F;                                    // what has more is adjusted to the end, judged anew
+  RefineParams polish{.samples = {.step_px = 6}};
   VerifyParams verify;
   SelectParams select;
   AmbiguityParams ambiguity;
@@ -213,6 +214,9 @@ class Recognizer {
   void RefineFrom(std::size_t m, const Pose& start, Candidate& candidate);
   void RefinePriors(std::size_t m);
   void Judge(Candidate& candidate);
+  [[nodiscard]] bool IsWorthPolishing(const Candidate& candidate) const {
+    return candidate.score >= params_.min_polish_score;
+  }
   void Polish(Candidate& candidate);
 
   // recognizer_report.cpp

@@ -95,6 +95,10 @@ void Recognizer::FindTurnedRivals(const Candidate& candidate, float min_odds, Ri
     RefinePose(params_.refine, ImagesFor(params_.refine), model, start, refine_scratch_, turned.pose);
     if (!turned.pose.ok) continue;
     Judge(turned);
+    if (IsWorthPolishing(turned)) {
+      Polish(turned);
+      Judge(turned);
+    }
     if (IsRival(turned, rivals, min_odds)) rivals.push_back({turned.pose.T_camera_model, OddsOf(turned.score)});
   }
 }
@@ -161,7 +165,6 @@ void Recognizer::Report(RecognitionResult& result) {
                    {candidates.begin(), candidates.end()}, verify_scratch_, claims_, accepted_, dropped);
   for (const std::uint16_t i : accepted_) {
     Candidate& candidate = candidates[i];
-    Polish(candidate);
     const Matrix3d R_reference = ReferenceFor(candidate);
     MakeCanonical(R_reference, candidate);
     result.detections.push_back(DetectionOf(candidate));

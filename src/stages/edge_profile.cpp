@@ -20,7 +20,7 @@ std::uint32_t Both(const std::int16_t* p) {
   return static_cast<std::uint16_t>(p[0]) | static_cast<std::uint32_t>(static_cast<std::uint16_t>(p[1])) << 16;
 }
 
-WIREPOSE_VECTOR_KERNEL void Place(const Vector2& start, const Vector2& step, std::size_t lanes, Places& out) {
+WIREPOSE_VECTOR_KERNEL void FindPlaces(const Vector2& start, const Vector2& step, std::size_t lanes, Places& out) {
   const float x0 = start.x(), y0 = start.y(), dx = step.x(), dy = step.y();
   for (std::size_t k = 0; k < lanes; ++k) {
     const auto n = static_cast<float>(static_cast<std::int32_t>(k));
@@ -61,7 +61,7 @@ bool EdgeProfile::Read(const SmoothPlane& plane, int width, int height, const Ve
   }
   const std::size_t lanes = WholeVectors(static_cast<std::size_t>(count_));
   Places places;
-  Place({p.x() - reach * normal.x(), p.y() - reach * normal.y()}, normal, lanes, places);
+  FindPlaces({p.x() - reach * normal.x(), p.y() - reach * normal.y()}, normal, lanes, places);
   for (std::size_t k = 0; k < static_cast<std::size_t>(count_); ++k) {
     const std::int16_t* top = plane.data() + places.index[k];
     const std::int16_t* bottom = top + kMaxImageWidth;

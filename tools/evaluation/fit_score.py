@@ -2,13 +2,15 @@
 """Fits the score (src/stages/score.h) to candidates of simulated scenes and writes src/stages/score_table.cpp, or the
 rank of line sets (src/stages/set_rank.h) and src/stages/rank_table.cpp.
 
-  fit_score.py score CANDIDATES.csv[:WEIGHT]... [--table FILE]
-  fit_score.py rank SETS.csv[:WEIGHT]... [--table FILE]
+  fit_score.py score CANDIDATES.csv... [--also CANDIDATES.csv...] [--table FILE]
+  fit_score.py rank SETS.csv... [--also SETS.csv...] [--table FILE]
 
-The files come from `wirepose eval --candidates` and `--sets`; WEIGHT says how much a row of a file counts (1). Right is
-a pose within 0.1 diameters of a true instance, or 0.15 before it is adjusted. Gradient boosted trees of fixed depth
-(Friedman 2001; second order leaves as in Chen & Guestrin 2016) under monotonicity constraints where a term's direction is known. Prints a reliability table from
-5-fold cross validation by scene. Copies of a scene must keep its number, so that they fall into one fold.
+The files come from `wirepose eval --candidates` and `--sets`. Right is a pose within 0.1 diameters of a true instance,
+or 0.15 before it is adjusted. Scenes with more objects than are usual, `--also`, are fitted to but not judged by; their
+right poses weigh as little as makes them as rare as in the others. Gradient boosted trees of fixed depth (Friedman
+2001; second order leaves as in Chen & Guestrin 2016; scikit-learn's) under monotonicity constraints where a term's
+direction is known. Prints a reliability table from 5-fold cross validation by scene. Copies of a scene must keep its
+number, so that they fall into one fold.
 """
 import argparse
 import csv
@@ -16,10 +18,9 @@ import dataclasses
 import pathlib
 
 import numpy as np
+from sklearn.ensemble import HistGradientBoostingClassifier
 
 DEPTH = 4
-BINS = 24
-RIDGE = 3.0
 RISING = {'visible_px', 'inside', 'support', 'sharp', 'sharp_of_support', 'full_edges', 'weakest_edge', 'distinct',
           'clear', 'dimmest_edge', 'outline', 'outline_distinct', 'inner_distinct', 'ends', 'corners',
           'weakest_face', 'on', 'drop', 'stands'}
@@ -46,105 +47,59 @@ KINDS = {'score': Kind('visible_px', 'gap', 0.1, 300, 0.06, 'score.h', 'score_ta
 
 
 class Data:
-    def __init__(self, kind, arguments):
-        rows = []
-        for argument in arguments:
-            path, _, weight = argument.partition(':')
-            with open(path, newline='') as file:
-                rows += [(float(weight or 1), row) for row in csv.DictReader(file)]
-        if not rows:
-            raise SystemExit('fit_score.py: no candidates; name CSV files of `wirepose eval --candidates` or `--sets`')
-        columns = list(rows[0][1])
-        if not {kind.first, kind.last} <= set(columns):
-            raise SystemExit(f'fit_score.py: {arguments[0]}: no columns {kind.first} to {kind.last}; candidates come from '
-                             '`wirepose eval --candidates`, line sets from `--sets`')
-        self.names = columns[columns.index(kind.first):columns.index(kind.last) + 1]
-        self.terms = np.array([[float(row[name]) for name in self.names] for _, row in rows], np.float32)
-        self.right = np.array([float(row['error_d']) < kind.right_d for _, row in rows], float)
-        self.weight = np.array([weight for weight, _ in rows])
-        self.fold = np.array([int(row['scene_id']) % 5 for _, row in rows])
+    def __init__(self, kind, files, also):
+        parts = [self.read(kind, file) for file in files + also]
+        self.names = parts[0][0]
+        self.terms = np.concatenate([terms for _, terms, _, _ in parts])
+        self.right = np.concatenate([error < kind.right_d for _, _, error, _ in parts])
+        self.scene = np.concatenate([scene for _, _, _, scene in parts])
+        self.usual = np.repeat([True] * len(files) + [False] * len(also), [len(error) for _, _, error, _ in parts])
+        if not self.right[self.usual].any():
+            raise SystemExit('fit_score.py: no right pose in the files; name those of scenes with objects')
+        self.weight = np.ones(len(self.right))
+        if also:
+            self.weight[~self.usual & self.right] = self.odds(self.usual) / self.odds(~self.usual)
+
+    def odds(self, rows):
+        return self.right[rows].sum() / max(1, (~self.right[rows]).sum())
+
+    @staticmethod
+    def read(kind, path):
+        with open(path, newline='') as file:
+            columns = next(csv.reader(file), [])
+            if not {kind.first, kind.last, 'error_d', 'scene_id'} <= set(columns):
+                raise SystemExit(f'fit_score.py: {path}: no columns {kind.first} to {kind.last}; candidates come from '
+                                 '`wirepose eval --candidates`, line sets from `--sets`')
+            names = columns[columns.index(kind.first):columns.index(kind.last) + 1]
+            wanted = names + ['error_d', 'scene_id']
+            rows = np.loadtxt(file, delimiter=',', usecols=[columns.index(name) for name in wanted], ndmin=2)
+        rows = rows.reshape(-1, len(wanted))
+        return names, rows[:, :-2].astype(np.float32), rows[:, -2], rows[:, -1].astype(int)
 
 
-class Tree:
-    """A complete tree: splits in heap order as (term, threshold), then leaves."""
-
-    def __init__(self):
-        self.splits = [(0, np.inf)] * (2**DEPTH - 1)
-        self.leaves = [0.0] * 2**DEPTH
-
-    def predict(self, terms):
-        node = np.zeros(len(terms), int)
-        split_term = np.array([s[0] for s in self.splits])
-        threshold = np.array([s[1] for s in self.splits])
-        for _ in range(DEPTH):
-            above = terms[np.arange(len(terms)), split_term[node]] > threshold[node]
-            node = 2 * node + np.where(above, 2, 1)
-        return np.array(self.leaves)[node - len(self.splits)]
+def fit(kind, data, rows):
+    signs = [(n in RISING) - (n in FALLING) for n in data.names]
+    booster = HistGradientBoostingClassifier(
+        learning_rate=kind.rate, max_iter=kind.rounds, max_depth=DEPTH, max_leaf_nodes=None, l2_regularization=3,
+        max_bins=64, monotonic_cst=signs, early_stopping=False, random_state=1)
+    return booster.fit(data.terms[rows], data.right[rows], data.weight[rows])
 
 
-class Booster:
-    def __init__(self, kind, names):
-        self.kind = kind
-        self.sign = np.array([(n in RISING) - (n in FALLING) for n in names])
-        self.trees = []
-        self.bias = 0.0
+def complete(nodes):
+    """The tree as splits in heap order as (term, threshold), then leaves. Below a leaf that came early all goes left."""
+    splits, leaves = [(0, np.inf)] * (2**DEPTH - 1), [0.0] * 2**DEPTH
 
-    def fit(self, terms, right, weight):
-        quantiles = np.linspace(0, 1, BINS + 1)[1:-1]
-        self.cuts = [np.unique(np.quantile(column, quantiles).astype(np.float32)) for column in terms.T]
-        self.bins = np.stack([np.searchsorted(c, column) for c, column in zip(self.cuts, terms.T)], 1)
-        self.bias = np.log((weight * right).sum() / (weight * (1 - right)).sum())
-        log_odds = np.full(len(right), self.bias)
-        for _ in range(self.kind.rounds):
-            p = 1 / (1 + np.exp(-log_odds))
-            self.gradient, self.curvature = weight * (right - p), weight * p * (1 - p)
-            tree = Tree()
-            self.grow(tree, 0, np.arange(len(right)), -np.inf, np.inf)
-            self.trees.append(tree)
-            log_odds += tree.predict(terms)
-
-    def predict(self, terms):
-        return self.bias + sum(tree.predict(terms) for tree in self.trees)
-
-    def grow(self, tree, node, rows, low, high):
-        """Splits where it gains most; values of the children keep the order that the term's direction asks for."""
-        g, h = self.gradient[rows].sum(), self.curvature[rows].sum()
-        value = np.clip(g / (h + RIDGE), low, high)
-        best = (1e-4, None)
-        if node < len(tree.splits):
-            for term in range(len(self.cuts)):
-                best = max(best, self.best_cut(term, rows, g, h, value, low, high), key=lambda b: b[0])
-        else:
-            tree.leaves[node - len(tree.splits)] = self.kind.rate * value
+    def place(node, heap):
+        if heap >= len(splits):
+            leaves[heap - len(splits)] = node['value']
             return
-        if best[1] is None:  # everything goes left
-            self.grow(tree, 2 * node + 1, rows, low, high)
-            return
-        _, (term, cut, left, right) = best
-        tree.splits[node] = (term, float(self.cuts[term][cut]))
-        below = self.bins[rows, term] <= cut
-        middle = (left + right) / 2
-        bounds = {0: (low, high, low, high), 1: (low, middle, middle, high), -1: (middle, high, low, middle)}
-        a, b, c, d = bounds[int(self.sign[term])]
-        self.grow(tree, 2 * node + 1, rows[below], a, b)
-        self.grow(tree, 2 * node + 2, rows[~below], c, d)
+        if not node['is_leaf']:
+            splits[heap] = (node['feature_idx'], node['num_threshold'])
+        for side, child in ((1, 'left'), (2, 'right')):
+            place(node if node['is_leaf'] else nodes[node[child]], 2 * heap + side)
 
-    def best_cut(self, term, rows, g, h, value, low, high):
-        count = len(self.cuts[term]) + 1
-        bins = self.bins[rows, term]
-        gl = np.bincount(bins, self.gradient[rows], count).cumsum()[:-1]
-        hl = np.bincount(bins, self.curvature[rows], count).cumsum()[:-1]
-        if len(gl) == 0:
-            return (0, None)
-        left = np.clip(gl / (hl + RIDGE), low, high)
-        right = np.clip((g - gl) / (h - hl + RIDGE), low, high)
-
-        def gain_of(gradient, curvature, v):
-            return gradient * v - 0.5 * (curvature + RIDGE) * v * v
-        gain = gain_of(gl, hl, left) + gain_of(g - gl, h - hl, right) - gain_of(g, h, value)
-        gain = np.where((right - left) * self.sign[term] < 0, 0, gain)
-        k = int(gain.argmax())
-        return (gain[k], (term, k, left[k], right[k]))
+    place(nodes[0], 0)
+    return splits, leaves
 
 
 def number(value):
@@ -152,16 +107,17 @@ def number(value):
     return (text if '.' in text or 'e' in text else text + '.') + 'F'
 
 
-def table(booster):
-    kind = booster.kind
+def table(kind, booster):
+    trees = [complete(stage[0].nodes) for stage in booster._predictors]
     lines = ['// Written by tools/evaluation/fit_score.py; do not edit.', f'#include "stages/{kind.header}"', '',
              'namespace wirepose {', '', '// clang-format off', f'const ScoreTable& {kind.function}() {{',
-             f'  static constexpr std::array<ScoreTree, {len(booster.trees)}> kTrees = {{{{']
-    for tree in booster.trees:
-        splits = ', '.join(f'{{{term}, {number(threshold)}}}' for term, threshold in tree.splits)
-        leaves = ', '.join(number(leaf) for leaf in tree.leaves)
-        lines.append(f'    {{{{{{{splits}}}}}, {{{leaves}}}}},')
-    lines += ['  }};', f'  static constexpr ScoreTable kTable{{{number(booster.bias)}, kTrees}};', '  return kTable;', '}',
+             f'  static constexpr std::array<ScoreTree, {len(trees)}> kTrees = {{{{']
+    for splits, leaves in trees:
+        texts = ', '.join(f'{{{term}, {number(threshold)}}}' for term, threshold in splits)
+        values = ', '.join(number(leaf) for leaf in leaves)
+        lines.append(f'    {{{{{{{texts}}}}}, {{{values}}}}},')
+    bias = number(float(np.ravel(booster._baseline_prediction)[0]))
+    lines += ['  }};', f'  static constexpr ScoreTable kTable{{{bias}, kTrees}};', '  return kTable;', '}',
               '// clang-format on', '', '}  // namespace wirepose', '']
     return '\n'.join(lines)
 
@@ -169,35 +125,39 @@ def table(booster):
 def reliability(kind, data):
     p = np.zeros(len(data.right))
     for k in range(5):
-        held = data.fold == k
-        booster = Booster(kind, data.names)
-        booster.fit(data.terms[~held], data.right[~held], data.weight[~held])
-        p[held] = 1 / (1 + np.exp(-booster.predict(data.terms[held])))
-    loss = -(data.weight * np.log(np.where(data.right > 0, p, 1 - p))).sum() / data.weight.sum()
-    print(f'cross validation: mean log loss {loss:.4f}\nscore       n  right')
+        held = (data.scene % 5 == k) & data.usual
+        p[held] = fit(kind, data, data.scene % 5 != k).predict_proba(data.terms[held])[:, 1]
+    right, p = data.right[data.usual], p[data.usual]
+    print(f'cross validation: mean log loss {-np.log(np.where(right, p, 1 - p)).mean():.4f}')
+    order = np.argsort(-p)
+    precision = right[order].cumsum() / np.arange(1, len(p) + 1)
+    for wanted in (0.9, 0.95):
+        kept = np.flatnonzero(precision >= wanted)
+        share = right[order][:kept[-1] + 1].sum() / right.sum() if len(kept) else 0
+        print(f'right poses kept where {wanted:.0%} are right: {share:.3f}')
+    print('score       n  right')
     for low in np.arange(0, 1, 0.1):
         inside = (p >= low) & (p < low + 0.1 + 1e-9)
-        n = data.weight[inside].sum()
-        if n > 0:
-            mean = [(data.weight * v)[inside].sum() / n for v in (data.right, p)]
-            print(f'{low:.1f}-{low + 0.1:.1f} {n:6.0f}  {mean[0]:.2f}  (mean score {mean[1]:.2f})')
+        if inside.any():
+            print(f'{low:.1f}-{low + 0.1:.1f} {inside.sum():6}  {right[inside].mean():.2f}  '
+                  f'(mean score {p[inside].mean():.2f})')
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('kind', choices=KINDS)
-    parser.add_argument('files', nargs='+', metavar='FILE.csv[:WEIGHT]')
+    parser.add_argument('files', nargs='+', metavar='FILE.csv')
+    parser.add_argument('--also', nargs='+', default=[], metavar='FILE.csv')
     parser.add_argument('--table', type=pathlib.Path)
     args = parser.parse_args()
     kind = KINDS[args.kind]
     file = args.table or STAGES / kind.table
-    data = Data(kind, args.files)
+    data = Data(kind, args.files, args.also)
     print(f'{len(data.right)} poses, {int(data.right.sum())} right, {len(data.names)} terms')
     reliability(kind, data)
-    booster = Booster(kind, data.names)
-    booster.fit(data.terms, data.right, data.weight)
-    file.write_text(table(booster))
-    print(f'{file}: {len(booster.trees)} trees')
+    booster = fit(kind, data, slice(None))
+    file.write_text(table(kind, booster))
+    print(f'{file}: {len(booster._predictors)} trees')
 
 
 if __name__ == '__main__':
