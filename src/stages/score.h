@@ -13,7 +13,7 @@ namespace wirepose {
 // A complete binary tree. Node n of the splits goes on at 2 n + 1 when the term is at most the threshold, else at
 // 2 n + 2; the leaves follow on the splits.
 struct ScoreTree {
-  static constexpr std::size_t kDepth = 4;
+  static constexpr std::size_t kDepth = 5;
   static constexpr std::size_t kSplits = (1U << kDepth) - 1;
 
   struct Split {

@@ -20,7 +20,7 @@ import pathlib
 import numpy as np
 from sklearn.ensemble import HistGradientBoostingClassifier
 
-DEPTH = 4
+DEPTH = 5
 RISING = {'visible_px', 'inside', 'support', 'sharp', 'sharp_of_support', 'full_edges', 'weakest_edge', 'distinct',
           'clear', 'dimmest_edge', 'outline', 'outline_distinct', 'inner_distinct', 'ends', 'corners',
           'weakest_face', 'on', 'drop', 'stands'}
