@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -297,6 +298,30 @@ TEST_F(RecognizerTest, StatisticsDescribeTheFrame) {
     EXPECT_LE(d.score, result_.detections[i == 0 ? 0 : i - 1].score);
     for (const SetMember& m : TheRecognizer().line_set(i)) EXPECT_LT(m.line, TheRecognizer().lines().size());
   }
+}
+
+// The evidence of a candidate is that of the pose it ends at, and what may be right ends with all the samples it can
+// have.
+TEST_F(RecognizerTest, WhatMayBeRightIsAdjustedToTheEndAndJudgedThere) {
+  AddModels();
+  constexpr float kNever = 2, kSure = 0.6F;
+  std::array<int, 2> samples{}, sure{};
+  for (const std::size_t run : {0, 1}) {
+    RecognizerParams params;
+    if (run == 0) params.min_polish_score = kNever;
+    ASSERT_EQ(TheRecognizer().Configure(testing::GoldenCalibration(), params), RecognizerError::kOk);
+    for (int frame = 0; frame < testing::kGoldenFrames; ++frame) {
+      ASSERT_EQ(Process(testing::GoldenFrame(frame), result_), RecognizerError::kOk);
+      for (const Candidate& candidate : TheRecognizer().candidates()) {
+        EXPECT_EQ(candidate.evidence.rms_px, candidate.pose.rms_px);
+        if (candidate.score < kSure) continue;
+        ++sure[run];
+        samples[run] += candidate.pose.inliers;
+      }
+    }
+    ASSERT_GT(sure[run], 0);
+  }
+  EXPECT_GT(samples[1] / sure[1], 3 * samples[0] / sure[0] / 2);
 }
 
 TEST_F(RecognizerTest, StagesAreObservedInOrder) {
