@@ -87,8 +87,8 @@ struct RecognizerParams {
   HypothesisParams hypotheses;
   PromotionParams promotion;
   RefineParams refine{.iterations = 4, .samples = {.step_px = 14}};  // of candidates: near enough to be judged
-  float min_polish_score = 0.02F;  // what has more is adjusted to the end, judged anew
-  RefineParams polish{.samples = {.step_px = 6}};
+  float min_polish_score = 0.02F;                  // what has more is adjusted to the end, judged anew
+  RefineParams polish{.samples = {.step_px = 6}};  // with all that the images tell of the pose
   VerifyParams verify;
   SelectParams select;
   AmbiguityParams ambiguity;
