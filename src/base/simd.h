@@ -12,4 +12,11 @@
 #define WIREPOSE_VECTOR_KERNEL
 #endif
 
+// A part of a kernel: compiled into each of its versions. Called instead, it would be compiled for the narrowest one.
+#ifdef __GNUC__
+#define WIREPOSE_INLINE inline __attribute__((always_inline))
+#else
+#define WIREPOSE_INLINE inline
+#endif
+
 #endif  // WIREPOSE_BASE_SIMD_H_

@@ -33,7 +33,7 @@ WIREPOSE_VECTOR_KERNEL void Slide(const std::uint8_t* in, const std::uint8_t* ou
 
 // out[x] = sum of columns x - kWindowRadius to x + kWindowRadius, the first and the last one repeated beyond the
 // borders. Sums of two, four and eight neighbours first: fifteen columns in five vector additions.
-inline void SumWindow(const std::array<std::int32_t, kMaxImageWidth>& columns, int width, PaddedRow& a, PaddedRow& b,
+WIREPOSE_INLINE void SumWindow(const std::array<std::int32_t, kMaxImageWidth>& columns, int width, PaddedRow& a, PaddedRow& b,
                       std::array<std::int32_t, kMaxImageWidth>& out) {
   static_assert(kWindowRadius == 7);
   const int padded = width + kWindow - 1;
