@@ -46,8 +46,9 @@ class Matcher {
  private:
   void MatchPairs(std::span<const PreparedSet> sets, std::span<const ImageLinePair> pairs) {
     for (const ImageLinePair& pair : pairs) {
-      const float room = RoomOf(pair);
-      if (room < 0 || !budget_.Spend(1)) break;  // nor can the rest: pairs come by falling quality
+      if (RoomOf(pair) < 0 || !budget_.Spend(1)) break;  // nor can the rest: pairs come by falling quality
+      const float room = RoomOf(pair) - Missing(pair);
+      if (room < 0) continue;
       for (const PreparedSet& set : sets) {
         if (pair.kind == set.kind) MatchPair(set, pair, std::sqrt(2 * room));
       }
@@ -69,6 +70,12 @@ class Matcher {
     const float best = pair.quality + params_.cover_gain * (1 + base_cover_) + params_.junction_gain +
                        params_.promotion * static_cast<float>(params_.max_promotions);
     return out_.worst() ? best - out_.worst()->rank : kUnlimited;
+  }
+
+  // What the best conceivable match gains and one of this pair cannot.
+  [[nodiscard]] float Missing(const ImageLinePair& pair) const {
+    return (pair.metric ? 0.0F : params_.cover_gain + params_.no_depth_loss) +
+           (pair.base_end == LineEnd::kNone ? params_.junction_gain : 0.0F);
   }
 
   // `sigmas`: no member farther off than this many standard deviations can be kept.
