@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "base/check.h"
+#include "base/portable_math.h"
 #include "base/work_budget.h"
 
 namespace wirepose {
@@ -16,7 +18,13 @@ class Matcher {
  public:
   Matcher(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
           const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out)
-      : params_(params), camera_(camera), model_(model), sets_(sets), out_(out), budget_(params.max_steps) {
+      : params_(params),
+        camera_(camera),
+        model_(model),
+        sets_(sets),
+        out_(out),
+        ranker_(params.rank, model, lines),
+        budget_(params.max_steps) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (!lines[i].has_depth) continue;
       length_[i] = lines[i].Length();
@@ -29,7 +37,7 @@ class Matcher {
   void MatchBase(std::size_t base) {
     const float length = length_[base];
     const float slack = slack_[base];
-    const std::span<const ImageLinePair> pairs = sets_.OfBase(base);
+    RankPairs(sets_.OfBase(base));
     // Both sets of one base edge follow each other; they are combined, since they share it (paper: "combined if they
     // share a line").
     for (std::size_t first = 0, next = 0; first < model_.sets.size(); first = next) {
@@ -37,25 +45,67 @@ class Matcher {
       while (next < model_.sets.size() && model_.sets[next].base_edge == e) ++next;
       const PreparedEdge& edge = model_.edges[e];
       if (!Fits(length, slack, edge.length_m, params_.min_cover)) continue;
-      base_cover_ = std::min(1.0F, length / edge.length_m);
-      MatchPairs({model_.sets.begin() + first, model_.sets.begin() + next}, pairs);
+      RankBase(e, std::min(1.0F, length / edge.length_m));
+      MatchPairs({model_.sets.begin() + first, model_.sets.begin() + next});
       Promote();
     }
   }
 
  private:
-  void MatchPairs(std::span<const PreparedSet> sets, std::span<const ImageLinePair> pairs) {
-    for (const ImageLinePair& pair : pairs) {
-      if (RoomOf(pair) < 0 || !budget_.Spend(1)) break;  // nor can the rest: pairs come by falling quality
-      const float room = RoomOf(pair) - Missing(pair);
-      if (room < 0) continue;
+  // The rank of a pair as far as the pair itself decides it, and the most that member and promotions can make of it.
+  struct PairRank {
+    float known = 0, most = 0;
+  };
+
+  // At a corner of the model and elsewhere.
+  struct PairRanks {
+    PairRank corner, apart;
+    std::uint16_t pair = 0;
+    [[nodiscard]] float Most() const { return std::max(corner.most, apart.most); }
+  };
+
+  [[nodiscard]] PairRank RankAs(PairClass c, const ImageLinePair& pair) const {
+    const float known = ranker_.OfPair(c, pair);
+    return {known, known + ranker_.Most(c, pair, length_[pair.other])};
+  }
+
+  static bool Meets(const ImageLinePair& pair) { return pair.base_end != LineEnd::kNone; }
+
+  [[nodiscard]] PairRanks RanksOf(const ImageLinePair& pair) const {
+    const PairRank apart = RankAs(ClassOf(pair, false), pair);
+    return {Meets(pair) ? RankAs(ClassOf(pair, true), pair) : apart, apart,
+            static_cast<std::uint16_t>(&pair - sets_.pairs.data())};
+  }
+
+  void RankPairs(std::span<const ImageLinePair> pairs) {
+    pair_ranks_.clear();
+    for (const ImageLinePair& pair : pairs) pair_ranks_.push_back(RanksOf(pair));
+    std::sort(pair_ranks_.begin(), pair_ranks_.end(), [](const PairRanks& p, const PairRanks& q) {
+      return p.Most() != q.Most() ? p.Most() > q.Most() : p.pair < q.pair;
+    });
+  }
+
+  void RankBase(std::size_t edge, float cover) {
+    for (std::size_t c = 0; c < kPairClasses; ++c)
+      base_rank_[c] = ranker_.OfBase(static_cast<PairClass>(c), edge, cover);
+  }
+
+  void MatchPairs(std::span<const PreparedSet> sets) {
+    const float most_of_base = *std::max_element(base_rank_.begin(), base_rank_.end());
+    for (const PairRanks& ranks : pair_ranks_) {
+      if (out_.worst() && ranks.Most() + most_of_base < out_.worst()->rank) break;  // nor can the rest
+      if (!budget_.Spend(1)) break;
+      const ImageLinePair& pair = sets_.pairs[ranks.pair];
+      const Rank corner = RankOf(ClassOf(pair, Meets(pair)), ranks.corner);
+      const Rank apart = RankOf(ClassOf(pair, false), ranks.apart);
+      if (std::max(corner.room, apart.room) < 0) continue;
       for (const PreparedSet& set : sets) {
-        if (pair.kind == set.kind) MatchPair(set, pair, std::sqrt(2 * room));
+        if (pair.kind == set.kind) MatchPair(set, pair, corner, apart);
       }
     }
   }
 
-  // What the length of a line may be wrong by: its ends by a pixel or two, its depth by its sigma.
+  // What the lines of a length may be wrong by: its ends by a pixel or two, its depth by its sigma.
   [[nodiscard]] float SlackOf(const Line3& line) const {
     const float metres_per_px = 0.5F * (line.a.z() + line.b.z()) / static_cast<float>(camera_.f);
     return params_.end_tolerance_m + 2 * metres_per_px + params_.sigmas * DirectionSigma(camera_, line) * line.Length();
@@ -65,38 +115,29 @@ class Matcher {
     return length < edge_length * (1 + params_.length_tolerance) + slack && length + slack > min_cover * edge_length;
   }
 
-  // By how much the best conceivable match of this pair outranks what is dropped: the most that a misfit may cost.
-  [[nodiscard]] float RoomOf(const ImageLinePair& pair) const {
-    const float best = pair.quality + params_.cover_gain * (1 + base_cover_) + params_.junction_gain +
-                       params_.promotion * static_cast<float>(params_.max_promotions);
-    return out_.worst() ? best - out_.worst()->rank : kUnlimited;
+  // The rank of a pair with base line and base edge, before it is known which member matches.
+  struct Rank {
+    PairClass pair_class;
+    float known;
+    float room;  // by how much the best conceivable match outranks what is dropped
+  };
+
+  [[nodiscard]] Rank RankOf(PairClass c, const PairRank& pair) const {
+    const float base = base_rank_[static_cast<std::size_t>(c)];
+    return {c, pair.known + base, out_.worst() ? pair.most + base - out_.worst()->rank : kUnlimited};
   }
 
-  // What the best conceivable match gains and one of this pair cannot.
-  [[nodiscard]] float Missing(const ImageLinePair& pair) const {
-    return (pair.metric ? 0.0F : params_.cover_gain + params_.no_depth_loss) +
-           (pair.base_end == LineEnd::kNone ? params_.junction_gain : 0.0F);
-  }
-
-  // `sigmas`: no member farther off than this many standard deviations can be kept.
-  void MatchPair(const PreparedSet& set, const ImageLinePair& pair, float sigmas) {
+  void MatchPair(const PreparedSet& set, const ImageLinePair& pair, const Rank& corner, const Rank& apart) {
     if (!pair.metric) {
-      for (std::size_t i = set.first; i < set.corner_end; ++i) Emit(set, model_.members[i], pair);
+      for (std::size_t i = set.first; i < set.corner_end; ++i) Emit(set, model_.members[i], pair, corner);
       return;
     }
-    const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
     // Most pairs of a scene are too far apart for any member.
+    const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
     if (pair.farthest_end_m > set.max_farthest_end_m * (1 + params_.length_tolerance) + slack) return;
     // Members whose distance agrees: a few of the rest by binary search, and those at a corner when the lines may meet.
-    float high = (pair.distance_m + slack) / (1 - params_.length_tolerance);
-    float low = (pair.distance_m - slack) / (1 + params_.length_tolerance);
-    const float reach = sigmas * DistanceSigma(pair, high);
-    high = std::min(high, pair.distance_m + reach);
-    low = std::max(low, pair.distance_m - reach);
-    const float max_angle =
-        std::min(params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad, sigmas * AngleSigma(pair));
-    MatchRange(set, set.first, set.corner_end, {low, high, max_angle}, pair);
-    MatchRange(set, set.corner_end, set.end, {low, high, max_angle}, pair);
+    if (corner.room >= 0) MatchRange(set, set.first, set.corner_end, pair, corner);
+    if (apart.room >= 0) MatchRange(set, set.corner_end, set.end, pair, apart);
   }
 
   struct Limits {
@@ -104,16 +145,30 @@ class Matcher {
     float max_angle_rad;  // between the pair's and the member's angle
   };
 
-  void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, const Limits& limits,
-                  const ImageLinePair& pair) {
+  // What is further off is out of tolerance or cannot be kept.
+  [[nodiscard]] Limits LimitsOf(const ImageLinePair& pair, const Rank& rank) const {
+    const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
+    const float high = (pair.distance_m + slack) / (1 - params_.length_tolerance);
+    const float low = (pair.distance_m - slack) / (1 + params_.length_tolerance);
+    const float reach = std::sqrt(rank.room / ranker_.LossOfDistance(rank.pair_class)) * DistanceSigma(pair, high);
+    const float angle = std::sqrt(rank.room / ranker_.LossOfAngle(rank.pair_class)) * AngleSigma(pair);
+    return {std::max(low, pair.distance_m - reach), std::min(high, pair.distance_m + reach),
+            std::min(params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad, angle)};
+  }
+
+  void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, const ImageLinePair& pair,
+                  const Rank& rank) {
     const PreparedMember* members = model_.members.data();
-    if (begin == end || members[end - 1].distance_m < limits.low_m) return;
+    if (begin == end) return;
+    const Limits limits = LimitsOf(pair, rank);
+    if (members[end - 1].distance_m < limits.low_m) return;
     const PreparedMember* from =
         std::lower_bound(members + begin, members + end, limits.low_m,
                          [](const PreparedMember& m, float value) { return m.distance_m < value; });
     for (const PreparedMember* m = from; m != members + end && m->distance_m <= limits.high_m && budget_.Spend(1);
          ++m) {
-      if (std::abs(pair.angle_rad - m->angle_rad) <= limits.max_angle_rad && SizeAgrees(pair, *m)) Emit(set, *m, pair);
+      if (std::abs(pair.angle_rad - m->angle_rad) <= limits.max_angle_rad && SizeAgrees(pair, *m))
+        Emit(set, *m, pair, rank);
     }
   }
 
@@ -123,43 +178,29 @@ class Matcher {
     return Fits(length_[pair.other], slack_[pair.other], member.other_length_m, params_.min_other_cover);
   }
 
-  void Emit(const PreparedSet& set, const PreparedMember& member, const ImageLinePair& pair) {
+  void Emit(const PreparedSet& set, const PreparedMember& member, const ImageLinePair& pair, const Rank& rank) {
     CorrespondingPair match;
     match.image_pair = static_cast<std::uint16_t>(&pair - sets_.pairs.data());
     match.base_edge = set.base_edge;
     match.other_edge = member.other_edge;
-    match.rank = pair.quality + params_.cover_gain * base_cover_ +
-                 (pair.metric ? Agreement(pair, member) : -params_.no_depth_loss);
+    const float other_cover = std::min(1.0F, length_[pair.other] / member.other_length_m);
+    match.rank = rank.known + ranker_.OfOther(rank.pair_class, pair, member, other_cover);
     if (pair.base_end != LineEnd::kNone && member.base_end != 2) {
       match.junction = 1;
       match.base_flipped = member.base_end == static_cast<std::uint8_t>(pair.base_end) ? 0 : 1;
-      match.rank += params_.junction_gain;
-      Collect(match);
+      Collect(match, rank.pair_class);
       return;
     }
     if (!pair.metric) return;
     for (const std::uint8_t flipped : {0, 1}) {
       match.base_flipped = flipped;
-      Collect(match);
+      Collect(match, rank.pair_class);
     }
   }
 
-  static float AngleSigma(const ImageLinePair& pair) { return 0.02F + pair.angle_sigma_rad; }
-  static float DistanceSigma(const ImageLinePair& pair, float distance_m) {
-    return 0.003F + 0.01F * distance_m + pair.distance_sigma_m;
-  }
-
-  // Exponent of the Gaussian of V, and the other line's cover.
-  [[nodiscard]] float Agreement(const ImageLinePair& pair, const PreparedMember& member) const {
-    const float angle = (pair.angle_rad - member.angle_rad) / AngleSigma(pair);
-    const float distance = (pair.distance_m - member.distance_m) / DistanceSigma(pair, member.distance_m);
-    const float cover = std::min(1.0F, length_[pair.other] / member.other_length_m);
-    return params_.cover_gain * cover - 0.5F * (angle * angle + distance * distance);
-  }
-
-  void Collect(const CorrespondingPair& match) {
+  void Collect(const CorrespondingPair& match, PairClass c) {
     // With the most that promotion can add it would still be dropped: it only counts for the others.
-    const float best = match.rank + params_.promotion * static_cast<float>(params_.max_promotions);
+    const float best = match.rank + std::max(0.0F, ranker_.OfPromotions(c, kMaxPromotions));
     if ((out_.worst() && best < out_.worst()->rank) || !matches_.try_push_back(match)) out_.CountDropped(1);
     EdgeBits& edges = edges_[match.base_flipped];
     edges[match.other_edge / 32] |= 1U << (match.other_edge % 32);
@@ -168,15 +209,21 @@ class Matcher {
   // Corresponding sets that share the base line and its edge are promoted: each ranks by the number of model edges
   // that found an image line under this assignment.
   void Promote() {
-    float promotion[2];
+    if (matches_.empty()) {
+      edges_[0] = edges_[1] = {};
+      return;
+    }
+    int promotions[2];
     for (std::size_t flip = 0; flip < 2; ++flip) {
       int count = 0;
       for (const std::uint32_t word : edges_[flip]) count += std::popcount(word);
-      promotion[flip] = params_.promotion * static_cast<float>(std::min(count, params_.max_promotions));
+      promotions[flip] = std::min(count, kMaxPromotions);
       edges_[flip] = {};
     }
     for (CorrespondingPair& match : matches_) {
-      match.rank += promotion[match.base_flipped];
+      const int count = promotions[match.base_flipped];
+      match.promotions = static_cast<std::uint8_t>(count);
+      match.rank += ranker_.OfPromotions(ClassOf(sets_.pairs[match.image_pair], match.junction != 0), count);
       out_.Push(match);
     }
     matches_.clear();
@@ -187,10 +234,12 @@ class Matcher {
   const PreparedModel& model_;
   const ImageLineSets& sets_;
   CorrespondingPairs& out_;
+  PairRanker ranker_;
   std::array<float, kMaxSegments> length_{}, slack_{};  // of lines with depth, m
-  // Of the base line and base edge at hand.
-  float base_cover_ = 0;
-  FixedVector<CorrespondingPair, 2048> matches_;
+  // Of the base line at hand, and of its base edge.
+  FixedVector<PairRanks, kMaxSegments> pair_ranks_;  // by what they can rank at most
+  std::array<float, kPairClasses> base_rank_{};
+  FixedVector<CorrespondingPair, kMaxCorrespondences> matches_;  // of the base edge
   EdgeBits edges_[2] = {};
   WorkBudget budget_;
 };
@@ -205,6 +254,54 @@ bool FindCorrespondences(const CorrespondenceParams& params, const RectifiedCame
     if (sets.first[b] != sets.first[b + 1] && !matcher.budget_hit()) matcher.MatchBase(b);
   }
   return !matcher.budget_hit();
+}
+
+namespace {
+
+const PreparedMember& MemberOf(const PreparedModel& model, const ImageLinePair& pair, const CorrespondingPair& match) {
+  const PreparedMember* found = nullptr;
+  for (const PreparedSet& set : model.sets) {
+    if (set.base_edge != match.base_edge || set.kind != pair.kind) continue;
+    for (std::size_t i = set.first; i < set.end; ++i) {
+      if (model.members[i].other_edge == match.other_edge) found = &model.members[i];
+    }
+  }
+  Check(found != nullptr);  // the match was made of a member
+  return *found;
+}
+
+}  // namespace
+
+PairTerms TermsOf(const PreparedModel& model, const Lines3& lines, const ImageLineSets& sets,
+                  const CorrespondingPair& match) {
+  const ImageLinePair& pair = sets.pairs[match.image_pair];
+  const PreparedMember& member = MemberOf(model, pair, match);
+  const Line3 &base = lines[pair.base], &other = lines[pair.other];
+  PairTerms terms{};
+  const auto set = [&](PairTerm term, float value) { terms[static_cast<std::size_t>(term)] = value; };
+  const auto share = [&](PairTerm term, PairTerm squared, float value) {
+    set(term, std::min(1.0F, value));
+    set(squared, std::min(1.0F, value) * std::min(1.0F, value));
+  };
+  const auto log_share = [&](std::size_t edge) { return Log(model.edges[edge].length_m / model.view.diameter_m); };
+  set(PairTerm::kBasePx, Log(base.segment.Length()));
+  set(PairTerm::kOtherPx, Log(other.segment.Length()));
+  set(PairTerm::kDepth, Log(0.5F * (base.a.z() + base.b.z())));
+  set(PairTerm::kMeet, pair.base_end == LineEnd::kNone ? 0.0F : 1.0F);
+  set(PairTerm::kBaseEdge, log_share(match.base_edge));
+  set(PairTerm::kOtherEdge, log_share(match.other_edge));
+  share(PairTerm::kBaseCover, PairTerm::kBaseCoverSquared, base.Length() / model.edges[match.base_edge].length_m);
+  set(PairTerm::kPromotion, match.promotions);
+  if (!pair.metric) return terms;
+  const float angle = (pair.angle_rad - member.angle_rad) / AngleSigma(pair);
+  const float distance = (pair.distance_m - member.distance_m) / DistanceSigma(pair, member.distance_m);
+  set(PairTerm::kAngleSigma, pair.log_angle_sigma);
+  set(PairTerm::kDistanceSigma, pair.log_distance_sigma);
+  set(PairTerm::kAngleSquared, angle * angle);
+  set(PairTerm::kDistanceSquared, distance * distance);
+  share(PairTerm::kOtherCover, PairTerm::kOtherCoverSquared, other.Length() / member.other_length_m);
+  share(PairTerm::kReach, PairTerm::kReachSquared, pair.farthest_end_m / member.farthest_end_m);
+  return terms;
 }
 
 }  // namespace wirepose

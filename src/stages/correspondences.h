@@ -7,6 +7,7 @@
 #include "base/keep_best_of_many.h"
 #include "model/prepared_model.h"
 #include "stages/line_sets.h"
+#include "stages/pair_rank.h"
 
 namespace wirepose {
 
@@ -17,11 +18,7 @@ struct CorrespondenceParams {
   float angle_tolerance_rad = 0.06F;
   float min_cover = 0.3F;        // share of the base edge that its image line must cover
   float min_other_cover = 0.2F;  // the same of the other edge
-  float promotion = 0.15F;       // rank gained by each model edge that finds a line under one base assignment ...
-  int max_promotions = 8;        // ... up to this many
-  float cover_gain = 2.0F;       // rank of a line that shows its whole edge
-  float junction_gain = 1.0F;    // rank of an image junction that is the model corner
-  float no_depth_loss = 2.0F;    // rank given up by a pair whose V is not known
+  PairWeightTable rank = DefaultPairWeights();
   // Members compared with image pairs, for one model in one frame: bounds the time. Simulated kitchens need up to
   // 280,000 with 3,072 image pairs.
   std::uint32_t max_steps = 1'000'000;
@@ -34,7 +31,8 @@ struct CorrespondingPair {
   std::uint16_t other_edge = 0;
   std::uint8_t base_flipped = 0;  // 1: the edge runs against its image line
   std::uint8_t junction = 0;      // 1: the image junction is the model corner that both edges share
-  float rank = 0;                 // log-likelihood up to a constant: more is better
+  std::uint8_t promotions = 0;    // edges that found a line with this base line on this edge, at most kMaxPromotions
+  float rank = 0;                 // log odds of being right
 };
 
 struct BetterPair {
@@ -50,13 +48,17 @@ using CorrespondingPairs = KeepBestOfMany<CorrespondingPair, kMaxCorrespondences
 
 // Every image pair whose parameter vector agrees with that of a model pair. Lengths are unreliable: a segment may be
 // any part of its edge that is not too short, but it cannot be longer. Symmetric models are searched from one edge of
-// each symmetry orbit. Pairs are ranked by the Gaussian likelihood of V under its own sigma, so that a precise
-// agreement beats a vague one, by length and cover of the lines, and by how many other lines fit the same assignment of
-// the base; members too far off to be kept are neither made nor counted. O(pairs * representative base edges *
+// each symmetry orbit. Pairs are ranked by how V agrees under its own sigma, by length and cover of the lines, and by how
+// many other lines fit the same assignment of the base (pair_rank.h); members too far off to be kept are neither made
+// nor counted. O(pairs * representative base edges *
 // members), at most `max_steps`: base lines come by falling length, and those for which no steps are left are not
 // searched. Returns false when that happened.
 bool FindCorrespondences(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                          const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out);
+
+// The terms of a pair that FindCorrespondences made of the same arguments, for fitting and tests. O(members).
+PairTerms TermsOf(const PreparedModel& model, const Lines3& lines, const ImageLineSets& sets,
+                  const CorrespondingPair& match);
 
 }  // namespace wirepose
 

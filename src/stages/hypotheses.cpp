@@ -172,6 +172,7 @@ class HypothesisMaker {
     // Across the lines: the middle between both. Along them: each pair of end points in turn.
     const Vector3 offset = 0.5F * (base_middle + other_middle) - hypothesis_.R * (0.5F * (model_base + model_other));
     const Vector3 t0 = offset - offset.dot(d1_) * d1_;
+    tried_.clear();
     AlignEnds(t0, *base_, *base_edge_);
     AlignEnds(t0, *other_, *other_edge_);
   }
@@ -183,7 +184,11 @@ class HypothesisMaker {
     const float i1 = std::max(line.a.dot(d1_), line.b.dot(d1_));
     const float ea = (hypothesis_.R * edge.a).dot(d1_);
     const float eb = (hypothesis_.R * edge.b).dot(d1_);
+    const float same = params_.same_alignment_px * base_->a.z() / f_;
     for (const float along : {i0 - std::min(ea, eb), i1 - std::max(ea, eb)}) {
+      // Lines that show their whole edge are aligned at both ends alike.
+      if (std::any_of(tried_.begin(), tried_.end(), [&](float t) { return std::abs(t - along) < same; })) continue;
+      tried_.push_back(along);
       hypothesis_.t = t0 + along * d1_;
       Score();
     }
@@ -245,6 +250,7 @@ class HypothesisMaker {
   // Of MakeFromAngle: axes of the model's frame, its origin, and the other edge's ends in it.
   Matrix3 M_;
   Vector3 model_middle_, other_a_, other_b_;
+  FixedVector<float, 4> tried_;  // of MakeFromParallels: positions along the lines, m
   Hypothesis hypothesis_;
   WorkBudget budget_;
 };

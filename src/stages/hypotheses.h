@@ -14,6 +14,7 @@ struct HypothesisParams {
   float end_tolerance_share = 0.08F;      // ... or by this share of it
   float direction_tolerance_rad = 0.15F;  // between the solved and the measured direction of the other line
   float length_angle_tolerance = 0.2F;    // cosine error up to which a direction solved from a length is believed
+  float same_alignment_px = 2;            // alignments of parallel lines nearer than this are one
   float min_depth_m = 0.15F;              // of the object's centre
   PoseScoreParams score;
   // Poses scored, for one model in one frame: bounds the time. Simulated kitchens need up to 1,100.

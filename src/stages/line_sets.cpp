@@ -123,6 +123,8 @@ class PairMaker {
     pair.kind = pair.angle_rad < params_.parallel_rad + pair.angle_sigma_rad ? LineSetKind::kParallel
                                                                              : LineSetKind::kIntersecting;
     pair.distance_m = DistanceOfLines(lines_[b], lines_[o], u, v, sine);
+    pair.log_angle_sigma = Log(OfAngle(pair.angle_sigma_rad));
+    pair.log_distance_sigma = Log(OfDistance(pair.distance_sigma_m));
   }
 
   static constexpr float kRounding = 1e-3F;  // far more than what a bound may be too low by

@@ -205,6 +205,73 @@ TEST(CorrespondenceFinding, AgreesWithBruteForce) {
   EXPECT_GT(compared, static_cast<std::size_t>(Cases(20)) * 100);
 }
 
+// The rank, made of parts as they become known, is the sum of the weighted terms; and no pair has more than its bound
+// says: what is pruned by it could not have been kept.
+TEST(CorrespondenceFinding, RankIsTheWeightedSumOfItsTerms) {
+  Random random(8);
+  std::array<int, kPairClasses> compared{};
+  for (const char* name : {"parcel_box", "juice_dispenser"}) {
+    const TestModel model = testing::Load(name);
+    const auto matching = std::make_unique<Matching>();
+    for (int k = 0; k < Cases(10); ++k) {
+      const auto scene = testing::MakeScene(
+          random, *model, testing::AnyView(random, *model, testing::TestCamera(), 250), {.clutter = k % 3 * 3});
+      Match(*model, *scene, *matching);
+      const auto ranker = std::make_unique<PairRanker>(DefaultPairWeights(), *model, scene->lines);
+      for (const CorrespondingPair& match : matching->pairs.Sorted()) {
+        const PairClass c = ClassOf(matching->sets.pairs[match.image_pair], match.junction != 0);
+        const PairWeights& weights = DefaultPairWeights()[static_cast<std::size_t>(c)];
+        const PairTerms terms = TermsOf(*model, scene->lines, matching->sets, match);
+        float rank = weights.bias;
+        for (std::size_t i = 0; i < kPairTerms; ++i) rank += weights.of[i] * terms[i];
+        ASSERT_NEAR(match.rank, rank, 2e-3F) << name << " class " << static_cast<int>(c);
+        const float known = ranker->OfPair(c, matching->sets.pairs[match.image_pair]) +
+                            ranker->OfBase(c, match.base_edge, terms[static_cast<std::size_t>(PairTerm::kBaseCover)]);
+        const ImageLinePair& pair = matching->sets.pairs[match.image_pair];
+        const float other_m = pair.metric ? scene->lines[pair.other].Length() : 0;
+        ASSERT_LE(match.rank, known + ranker->Most(c, pair, other_m));
+        ++compared[static_cast<std::size_t>(c)];
+      }
+    }
+  }
+  for (const int count : compared) EXPECT_GT(count, 20);
+}
+
+// The pruned list holds the same best pairs that a list without pruning has: each base line searched by itself, where
+// nothing is dropped.
+TEST(CorrespondenceFinding, PruningLosesNoneOfTheBest) {
+  const TestModel model = testing::Load("juice_dispenser");
+  Random random(9);
+  const auto all = std::make_unique<Matching>(), alone = std::make_unique<Matching>();
+  const auto one_base = std::make_unique<ImageLineSets>();
+  int pruned = 0;
+  for (int k = 0; k < Cases(6); ++k) {
+    const auto scene = testing::MakeScene(
+        random, *model, testing::AnyView(random, *model, testing::TestCamera(), 250), {.clutter = 80});
+    Match(*model, *scene, *all);
+    if (all->pairs.dropped() == 0) continue;
+    ++pruned;
+    // What the list has is at least as good as the best that any base line has alone.
+    const auto kept = all->pairs.Sorted();
+    for (std::size_t base = 0; base < scene->lines.size(); ++base) {
+      one_base->pairs.clear();
+      for (const ImageLinePair& pair : all->sets.OfBase(base)) one_base->pairs.push_back(pair);
+      for (std::size_t b = 0; b < one_base->first.size(); ++b)
+        one_base->first[b] = static_cast<std::uint16_t>(b <= base ? 0 : one_base->pairs.size());
+      if (one_base->pairs.empty()) continue;
+      FindCorrespondences({}, scene->camera, *model, scene->lines, *one_base, alone->pairs);
+      const std::size_t best_kept = static_cast<std::size_t>(
+          std::count_if(kept.begin(), kept.end(), [&](const CorrespondingPair& c) {
+            return all->sets.pairs[c.image_pair].base == base && c.rank > kept.back().rank + 0.5F;
+          }));
+      std::size_t best_alone = 0;
+      for (const CorrespondingPair& c : alone->pairs.Sorted()) best_alone += c.rank > kept.back().rank + 0.5F ? 1 : 0;
+      EXPECT_GE(best_kept + 1, best_alone) << "base " << base;
+    }
+  }
+  EXPECT_GT(pruned, 0);
+}
+
 // A cuboid of three different sides has three kinds of edges; the other nine would only repeat
 // their hypotheses.
 TEST(CorrespondenceFinding, SymmetricDuplicatesAreNotSearchedTwice) {

@@ -1,5 +1,5 @@
-// What `wirepose eval` writes for fitting: every promoted line set, every verified candidate, and whether they are
-// right.
+// What `wirepose eval` writes for fitting: corresponding pairs, every promoted line set, every verified candidate, and
+// whether they are right.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -12,6 +12,7 @@
 #include "eval_dataset.h"
 #include "report_dataset.h"
 #include "stages/evidence.h"
+#include "stages/pair_rank.h"
 #include "stages/set_rank.h"
 #include "tools/evaluation/results_csv.h"
 
@@ -53,9 +54,11 @@ class FitLogs : public ::testing::Test {
     ASSERT_NO_FATAL_FAILURE(testing::WriteReportDataset(folder.path()));
     const auto run = RunIn(
         folder.path(),
-        fmt::format("'{}' eval set --models models --out r.csv --candidates c.csv --sets s.csv", WIREPOSE_PROGRAM));
+        fmt::format("'{}' eval set --models models --out r.csv --candidates c.csv --sets s.csv --pairs p.csv",
+                    WIREPOSE_PROGRAM));
     ASSERT_EQ(run.status, 0) << run.err;
     sets_ = ReadRows(folder.path() / "s.csv", set_names_);
+    pairs_ = ReadRows(folder.path() / "p.csv", pair_names_);
     candidates_ = ReadRows(folder.path() / "c.csv", candidate_names_);
     const auto detections = ReadResults(folder.path() / "r.csv");
     ASSERT_TRUE(detections) << detections.error();
@@ -72,8 +75,8 @@ class FitLogs : public ::testing::Test {
     return least;
   }
 
-  static inline std::vector<Row> sets_, candidates_;
-  static inline std::vector<std::string> set_names_, candidate_names_;
+  static inline std::vector<Row> pairs_, sets_, candidates_;
+  static inline std::vector<std::string> pair_names_, set_names_, candidate_names_;
   static inline std::vector<Estimate> detections_;
 };
 
@@ -82,6 +85,7 @@ TEST_F(FitLogs, NameEveryTerm) {
     return names.size() > terms.size() && std::equal(terms.begin(), terms.end(), names.end() - std::ssize(terms));
   };
   EXPECT_TRUE(ends_with(set_names_, SetTermNames()));
+  EXPECT_TRUE(ends_with(pair_names_, PairTermNames()));
   for (const char* term : EvidenceTermNames())
     EXPECT_EQ(std::count(candidate_names_.begin(), candidate_names_.end(), term), 1) << term;
 }
@@ -110,10 +114,26 @@ TEST_F(FitLogs, TellTheTruthFromTheRest) {
   EXPECT_LT(alone, static_cast<int>(sets_.size()));
 }
 
+// Objects that were detected have right pairs, of lines that cover their edges; a wrong pair stands for many.
+TEST_F(FitLogs, PairsAreRightWhereAnObjectIs) {
+  int right = 0, wrong = 0;
+  for (const Row& row : pairs_) {
+    const bool is_right = row.at("instance") != "-1";
+    (is_right ? right : wrong) += 1;
+    EXPECT_EQ(row.at("weight"), is_right ? "1" : "200");
+    const auto found = std::find_if(detections_.begin(), detections_.end(), [&](const Estimate& d) {
+      return d.image_id == std::stoi(row.at("im_id")) && d.object_id == std::stoi(row.at("obj_id"));
+    });
+    if (is_right) EXPECT_NE(found, detections_.end()) << "frame " << row.at("im_id") << ", object " << row.at("obj_id");
+  }
+  EXPECT_GE(right, 3);
+  EXPECT_GT(wrong, 3);
+}
+
 TEST_F(FitLogs, AFileThatCannotBeWrittenIsNamed) {
   const testing::TemporaryFolder folder;
   ASSERT_NO_FATAL_FAILURE(testing::WriteReportDataset(folder.path()));
-  for (const char* option : {"--sets", "--candidates"}) {
+  for (const char* option : {"--pairs", "--sets", "--candidates"}) {
     const auto run = RunIn(folder.path(), fmt::format("'{}' eval set --models models --out r.csv {} none/such/x.csv",
                                                       WIREPOSE_PROGRAM, option));
     EXPECT_EQ(run.status, 2) << option;

@@ -78,8 +78,8 @@ struct FrameWriters {
 };
 
 FrameWriters OpenWriters(const EvalArguments& arguments) {
-  for (const fs::path& file : {arguments.out, arguments.json, arguments.candidates, arguments.options.sets,
-                               arguments.trace, arguments.report}) {
+  for (const fs::path& file : {arguments.out, arguments.json, arguments.candidates, arguments.options.pairs,
+                               arguments.options.sets, arguments.trace, arguments.report}) {
     if (!file.empty()) CheckWritable(file);
   }
   FrameWriters writers;
@@ -131,6 +131,8 @@ void AddEvalCommand(CLI::App& app) {
   eval->add_option("--overlay", arguments->overlay, "Folder for a picture of every frame");
   eval->add_option("--candidates", arguments->candidates,
                    "All verified candidates with their evidence (CSV), to fit the score to");
+  eval->add_option("--pairs", arguments->options.pairs,
+                   "Corresponding pairs of lines and whether they are right (CSV), to fit their rank to");
   eval->add_option("--sets", arguments->options.sets,
                    "All promoted line sets with their evidence (CSV), to fit their rank to");
   eval->add_option("--trace", arguments->trace,

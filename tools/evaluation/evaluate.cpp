@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "hal/dataset/depth_dataset.h"
+#include "tools/evaluation/pair_log.h"
 #include "tools/evaluation/set_log.h"
 
 namespace wirepose::evaluation {
@@ -182,11 +183,14 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
   if (options.trace) stages = &trace;
   std::optional<SetLog> sets;
   if (!options.sets.empty()) stages = &sets.emplace(options.sets, recognizer, *stages, clock);
+  std::optional<PairLog> pairs;
+  if (!options.pairs.empty()) stages = &pairs.emplace(options.pairs, recognizer, *stages, clock);
   RecognitionResult result;
   for (std::size_t i = 0; i < set.frames.size(); ++i) {
     FrameTimes times;
     trace.Start(set.frames[i].gt);
     if (sets) sets->Start(set.frames[i]);
+    if (pairs) pairs->Start(set.frames[i]);
     if (i == 0 || set.frames[i].scene_id != set.frames[i - 1].scene_id) TheTracker().Forget();
     const Outcome done = ProcessFrame(set.frames[i], set, recognizer, options.track ? &TheTracker() : nullptr,
                                       TimeOf(set.frames[i], options.rate_hz), clock, *stages, result, times);
@@ -198,6 +202,7 @@ Result<Evaluation, std::string> Evaluate(const EvaluationOptions& options, const
     if (!seen) return Error(seen.error());
   }
   if (sets && !sets->ok()) return Error(options.sets.string() + ": cannot be written; check the free space");
+  if (pairs && !pairs->ok()) return Error(options.pairs.string() + ": cannot be written; check the free space");
   evaluation.truth = truth;
   evaluation.metrics = ComputeMetrics(truth, evaluation.estimates);
   return evaluation;

@@ -23,6 +23,7 @@ struct EvaluationOptions {
   std::filesystem::path models;  // .wpm file or folder; empty: compile DATASET/models
   std::vector<int> object_ids;   // search only for these; empty: for all
   std::size_t frame_limit = 0;   // the first so many frames, and judge by them alone; 0: all
+  std::filesystem::path pairs;   // corresponding pairs and whether they are right, as CSV; empty: not written
   std::filesystem::path sets;    // promoted line sets with their evidence, as CSV; empty: not written
   bool trace = false;            // follow the true instances through the stages
   bool track = false;            // follow objects over the frames of a scene, as wireposed does; else single frames
