@@ -117,10 +117,14 @@ class Matcher {
     }
   }
 
+  [[nodiscard]] float OtherLength(const PreparedMember& member) const {
+    return model_.edges[member.other_edge].length_m;
+  }
+
   [[nodiscard]] bool SizeAgrees(const ImageLinePair& pair, const PreparedMember& member) const {
     const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
     if (pair.farthest_end_m > member.farthest_end_m * (1 + params_.length_tolerance) + slack) return false;
-    return Fits(length_[pair.other], slack_[pair.other], member.other_length_m, params_.min_other_cover);
+    return Fits(length_[pair.other], slack_[pair.other], OtherLength(member), params_.min_other_cover);
   }
 
   void Emit(const PreparedSet& set, const PreparedMember& member, const ImageLinePair& pair) {
@@ -153,7 +157,7 @@ class Matcher {
   [[nodiscard]] float Agreement(const ImageLinePair& pair, const PreparedMember& member) const {
     const float angle = (pair.angle_rad - member.angle_rad) / AngleSigma(pair);
     const float distance = (pair.distance_m - member.distance_m) / DistanceSigma(pair, member.distance_m);
-    const float cover = std::min(1.0F, length_[pair.other] / member.other_length_m);
+    const float cover = std::min(1.0F, length_[pair.other] / OtherLength(member));
     return params_.cover_gain * cover - 0.5F * (angle * angle + distance * distance);
   }
 
