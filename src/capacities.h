@@ -42,7 +42,8 @@ inline constexpr std::size_t kMaxEdgeSamples = 512;     // points on visible edg
 inline constexpr std::size_t kMaxSurfaceSamples = 192;  // points on visible faces of one pose; the step widens to fit
 
 // --- Models --------------------------------------------------------------------------------------------------------
-inline constexpr std::size_t kMaxModels = 16;          // objects searched for at once (memory budget is stated for 16)
+// Objects searched for at once: one bit each of a 32 bit selection. The memory budget of 8 MiB is stated for them.
+inline constexpr std::size_t kMaxModels = 32;
 inline constexpr std::size_t kMaxModelVertices = 512;  // a refrigerator with two doors and handles has 118
 inline constexpr std::size_t kMaxModelTriangles = 1024;
 inline constexpr std::size_t kMaxModelFaces = 256;   // planar surfaces after coplanar triangles are merged

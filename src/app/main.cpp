@@ -61,7 +61,9 @@ void AddModels(const Config& config) {
   g_models.Load(config.models);
   ModelIds ids;
   for (const std::uint32_t id : config.search_for) {
-    if (!ids.try_push_back(id)) throw WorkFailed(config.file.string() + ": search_for: more than 16 ids; remove some");
+    if (ids.try_push_back(id)) continue;
+    throw WorkFailed(config.file.string() + ": search_for: more than " + std::to_string(kMaxModels) +
+                     " ids; remove some");
   }
   const std::string refusal = g_models.Select(ids);
   if (!refusal.empty()) throw WorkFailed(config.file.string() + ": search_for: " + refusal);

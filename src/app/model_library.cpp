@@ -37,7 +37,8 @@ void ModelLibrary::Load(std::vector<std::filesystem::path> paths) {
 
 std::uint32_t ModelLibrary::BitsOf(const ModelStore& store, const ModelIds& ids, std::string& refusal) {
   const auto models = store.models();
-  if (ids.empty()) return (std::uint32_t{1} << models.size()) - 1;
+  // In 64 bits, since 32 models take all of 32.
+  if (ids.empty()) return static_cast<std::uint32_t>((std::uint64_t{1} << models.size()) - 1);
   std::uint32_t bits = 0;
   for (const std::uint32_t id : ids) {
     const auto found = std::find_if(models.begin(), models.end(), [id](const ModelView& m) { return m.id == id; });

@@ -135,8 +135,8 @@ void PrepareSets(PreparedModel& model) {
     const std::size_t first = model.members.size();
     for (const ModelSetMember& member : model.view.set_members.subspan(set.first_member, set.member_count)) {
       const PreparedEdge& other = model.edges[member.edge];
-      model.members.push_back({member.distance_m, member.angle_rad, member.farthest_end_m, other.length_m, member.edge,
-                               SharedEnd(model, base, other)});
+      model.members.push_back(
+          {member.distance_m, member.angle_rad, member.farthest_end_m, member.edge, SharedEnd(model, base, other)});
     }
     const auto begin = model.members.begin() + first;
     std::sort(begin, model.members.end(), [](const PreparedMember& p, const PreparedMember& q) {

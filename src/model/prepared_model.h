@@ -32,10 +32,9 @@ inline std::size_t NextEdge(const EdgeBits& bits, std::size_t edge) {
   return kMaxModelEdges;
 }
 
-// One member of a model line set, as matching reads it.
+// One member of a model line set, as matching reads it: the length of the other edge stands with the edge.
 struct PreparedMember {
   float distance_m = 0, angle_rad = 0, farthest_end_m = 0;
-  float other_length_m = 0;
   std::uint16_t other_edge = 0;
   std::uint8_t base_end = 2;  // of the base edge at which the other one meets it: 0 a, 1 b; 2: none
 };

@@ -28,6 +28,16 @@ void Count(std::size_t used, std::size_t capacity, std::uint32_t dropped, ListUs
   list.dropped += dropped;
 }
 
+// With the number of capacities.h, put in by the compiler: the core formats no text.
+constexpr auto kTooManyModelsText = [] {
+  static_assert(kMaxModels >= 10 && kMaxModels <= 99, "two digits");
+  auto text = std::to_array("too many models; at most ## are searched for at once");
+  auto* const digits = std::find(text.begin(), text.end(), '#');
+  digits[0] = static_cast<char>('0' + kMaxModels / 10);
+  digits[1] = static_cast<char>('0' + kMaxModels % 10);
+  return text;
+}();
+
 }  // namespace
 
 const char* StageName(Stage stage) {
@@ -68,7 +78,7 @@ const char* Describe(RecognizerError error) {
     case RecognizerError::kImageSizeMismatch:
       return "the image is not of the calibrated size";
     case RecognizerError::kTooManyModels:
-      return "too many models; at most 16 are searched for at once";
+      return kTooManyModelsText.data();
     case RecognizerError::kDuplicateModel:
       return "two models have the same id; rebuild one with another --id";
     case RecognizerError::kOtherCamera:

@@ -7,8 +7,8 @@
 namespace wirepose {
 namespace {
 
-static_assert(kDiagnosticStatuses == 4 && kMaxDiagnosticValues == 20, "change dds_idl/diagnostic_msgs.idl too");
-static_assert(kMaxModels + 1 <= kMaxDiagnosticValues && kStageCount + 1 + kMaxLists <= kMaxDiagnosticValues);
+static_assert(kDiagnosticStatuses == 4 && kMaxDiagnosticValues == 32, "change dds_idl/diagnostic_msgs.idl too");
+static_assert(kMaxModels <= kMaxDiagnosticValues && kStageCount + 1 + kMaxLists <= kMaxDiagnosticValues);
 
 enum Level : std::uint8_t { kOk = 0, kWarning = 1, kError = 2 };  // of diagnostic_msgs/msg/DiagnosticStatus
 

@@ -10,7 +10,7 @@ namespace wirepose {
 namespace {
 
 // Bounds of the IDL files, which cannot see capacities.h.
-static_assert(kMaxDetections == 16 && kMaxModes == 4 && kMaxModels == 16 && kMaxModelName == 32 && kStageCount == 9,
+static_assert(kMaxDetections == 16 && kMaxModes == 4 && kMaxModels == 32 && kMaxModelName == 32 && kStageCount == 9,
               "change the bounds in dds_idl/*.idl too");
 
 const ModelLabel* FindModel(const ModelLabels& models, std::uint32_t id) {

@@ -23,7 +23,7 @@ inline constexpr std::size_t kMaxLists = 8;  // bounded lists a message can repo
 // Of a scene: remove the old ones, all lines, and for each object wireframe, line set and label.
 inline constexpr std::size_t kMaxMarkers = 2 + 3 * kMaxDetections;
 inline constexpr std::size_t kDiagnosticStatuses = 4;
-inline constexpr std::size_t kMaxDiagnosticValues = 20;
+inline constexpr std::size_t kMaxDiagnosticValues = 32;
 
 // The largest serialized message that the types' bounds allow, 4 bytes of header included, rounded up. Not part of the
 // types: tests/publish/messages_test.cpp fills messages to their bounds and measures.
@@ -31,7 +31,7 @@ inline constexpr std::uint32_t kMaxDetectionsBytes = 32768;
 inline constexpr std::uint32_t kMaxRecognitionBytes = 12288;
 inline constexpr std::uint32_t kMaxHealthBytes = 4096;
 inline constexpr std::uint32_t kMaxMarkersBytes = 65536;
-inline constexpr std::uint32_t kMaxDiagnosticsBytes = 12288;
+inline constexpr std::uint32_t kMaxDiagnosticsBytes = 16384;
 inline constexpr std::uint32_t kMaxImageBytes = 307456;
 inline constexpr std::uint32_t kMaxCommandStatusBytes = 512;
 

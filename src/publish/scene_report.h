@@ -13,7 +13,7 @@
 
 namespace wirepose {
 
-// Points of all lines together; a full scene of 512 lines and 16 models of 30 visible edges has 1,900.
+// Points of all lines together; a full scene of 512 lines and 16 objects of 30 visible edges has 1,900.
 inline constexpr std::size_t kMaxScenePoints = 2048;
 
 struct ScenePoint {

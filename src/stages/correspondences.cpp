@@ -172,10 +172,14 @@ class Matcher {
     }
   }
 
+  [[nodiscard]] float OtherLength(const PreparedMember& member) const {
+    return model_.edges[member.other_edge].length_m;
+  }
+
   [[nodiscard]] bool SizeAgrees(const ImageLinePair& pair, const PreparedMember& member) const {
     const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
     if (pair.farthest_end_m > member.farthest_end_m * (1 + params_.length_tolerance) + slack) return false;
-    return Fits(length_[pair.other], slack_[pair.other], member.other_length_m, params_.min_other_cover);
+    return Fits(length_[pair.other], slack_[pair.other], OtherLength(member), params_.min_other_cover);
   }
 
   void Emit(const PreparedSet& set, const PreparedMember& member, const ImageLinePair& pair, const Rank& rank) {
@@ -183,7 +187,7 @@ class Matcher {
     match.image_pair = static_cast<std::uint16_t>(&pair - sets_.pairs.data());
     match.base_edge = set.base_edge;
     match.other_edge = member.other_edge;
-    const float other_cover = std::min(1.0F, length_[pair.other] / member.other_length_m);
+    const float other_cover = std::min(1.0F, length_[pair.other] / OtherLength(member));
     match.rank = rank.known + ranker_.OfOther(rank.pair_class, pair, member, other_cover);
     if (pair.base_end != LineEnd::kNone && member.base_end != 2) {
       match.junction = 1;
@@ -299,7 +303,7 @@ PairTerms TermsOf(const PreparedModel& model, const Lines3& lines, const ImageLi
   set(PairTerm::kDistanceSigma, pair.log_distance_sigma);
   set(PairTerm::kAngleSquared, angle * angle);
   set(PairTerm::kDistanceSquared, distance * distance);
-  share(PairTerm::kOtherCover, PairTerm::kOtherCoverSquared, other.Length() / member.other_length_m);
+  share(PairTerm::kOtherCover, PairTerm::kOtherCoverSquared, other.Length() / model.edges[match.other_edge].length_m);
   share(PairTerm::kReach, PairTerm::kReachSquared, pair.farthest_end_m / member.farthest_end_m);
   return terms;
 }

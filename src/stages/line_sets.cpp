@@ -60,11 +60,6 @@ class PairMaker {
     }
   }
 
-  // No pair of base b and a line of o's length or less has a higher quality, unless they meet.
-  [[nodiscard]] float LengthBound(std::size_t b, std::size_t o) const {
-    return log_length_[b] + log_length_[o] + std::max(0.0F, -log_angle_[b] - log_distance_[b]) + kRounding;
-  }
-
   // No pair of these two lines has a higher quality, unless they meet: the joint sigmas are at least the larger ones.
   [[nodiscard]] float QualityBound(std::size_t b, std::size_t o) const {
     float bound = log_length_[b] + log_length_[o] + kRounding;
@@ -185,8 +180,6 @@ void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, co
   for (std::size_t b = 0; b < lines.size(); ++b) {
     if (!lines[b].has_depth || lines[b].segment.Length() < params.min_depth_length_px) continue;
     for (std::size_t o = 0; o < lines.size(); ++o) {
-      // Lines come by falling length: nor can those that follow be kept.
-      if (!out.kept.WouldKeep({maker.LengthBound(b, o) + params.junction_quality, 0, 0})) break;
       // Of two lines with depth the longer one, which comes first, is the base: model sets hold both orders.
       if (o == b || (o < b && lines[o].has_depth)) continue;
       // Most pairs are too weak to be kept: the sooner that is known, the better.

@@ -33,8 +33,8 @@ WIREPOSE_VECTOR_KERNEL void Slide(const std::uint8_t* in, const std::uint8_t* ou
 
 // out[x] = sum of columns x - kWindowRadius to x + kWindowRadius, the first and the last one repeated beyond the
 // borders. Sums of two, four and eight neighbours first: fifteen columns in five vector additions.
-WIREPOSE_INLINE void SumWindow(const std::array<std::int32_t, kMaxImageWidth>& columns, int width, PaddedRow& a, PaddedRow& b,
-                      std::array<std::int32_t, kMaxImageWidth>& out) {
+WIREPOSE_INLINE void SumWindow(const std::array<std::int32_t, kMaxImageWidth>& columns, int width, PaddedRow& a,
+                               PaddedRow& b, std::array<std::int32_t, kMaxImageWidth>& out) {
   static_assert(kWindowRadius == 7);
   const int padded = width + kWindow - 1;
   for (int i = 0; i < kWindowRadius; ++i) {

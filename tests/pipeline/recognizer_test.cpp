@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -220,6 +221,66 @@ TEST_F(RecognizerTest, OnlySearchedModelsAreReported) {
   TheRecognizer().SearchFor(everything);
   ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
   EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), all);
+}
+
+// The bytes of what was found and where, whatever the model's id.
+std::string WithoutId(const Detection& detection) {
+  const auto bytes = [](const auto& value) {
+    return std::string(reinterpret_cast<const char*>(value.data()), sizeof(value[0]) * value.size());
+  };
+  const Pose& T = detection.T_camera_model;
+  return bytes(T.R) + bytes(T.t) + bytes(detection.covariance) +
+         bytes(std::array{detection.score, detection.visible_fraction});
+}
+
+// One object under 32 ids: each of them finds it alone, with the same bytes.
+TEST_F(RecognizerTest, EveryBitOfASelectionFindsItsModel) {
+  AddModels();
+  const StereoImages frame = testing::GoldenFrame(2);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  ASSERT_FALSE(result_.detections.empty());
+  ModelView view = *std::find_if(TheRecognizer().models().begin(), TheRecognizer().models().end(),
+                                 [&](const ModelView& m) { return m.id == result_.detections[0].model_id; });
+  TheRecognizer().ClearModels();
+  for (view.id = 100; TheRecognizer().models().size() < kMaxModels; ++view.id) {
+    ASSERT_EQ(TheRecognizer().AddModel(view), RecognizerError::kOk);
+  }
+  std::string first;
+  for (std::uint32_t m = 0; m < kMaxModels; ++m) {
+    TheRecognizer().SearchFor(1U << m);
+    ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+    ASSERT_FALSE(result_.detections.empty()) << m;
+    for (const Detection& d : result_.detections) EXPECT_EQ(d.model_id, 100 + m);
+    if (m == 0) first = WithoutId(result_.detections[0]);
+    EXPECT_EQ(WithoutId(result_.detections[0]), first) << m;
+  }
+}
+
+// The same with all 32 searched for, when the others have no line sets and so find nothing.
+TEST_F(RecognizerTest, TheLastOfManyModelsIsFoundAsTheOnlyOne) {
+  const StereoImages frame = testing::GoldenFrame(2);
+  std::size_t found = 0;
+  for (const auto& model : models_) {
+    TheRecognizer().ClearModels();
+    ASSERT_EQ(TheRecognizer().AddModel(model.View()), RecognizerError::kOk);
+    ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+    const FixedVector<Detection, kMaxDetections> alone = result_.detections;
+    found += alone.size();
+    TheRecognizer().ClearModels();
+    ModelView empty = model.View();
+    empty.line_sets = {};
+    for (empty.id = 100; TheRecognizer().models().size() < kMaxModels - 1; ++empty.id) {
+      ASSERT_EQ(TheRecognizer().AddModel(empty), RecognizerError::kOk);
+    }
+    ASSERT_EQ(TheRecognizer().AddModel(model.View()), RecognizerError::kOk);
+    ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+    ASSERT_EQ(result_.detections.size(), alone.size());
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      EXPECT_EQ(result_.detections[i].model_id, model.View().id);
+      EXPECT_EQ(WithoutId(result_.detections[i]), WithoutId(alone[i]));
+    }
+  }
+  EXPECT_GT(found, 0u);
 }
 
 TEST_F(RecognizerTest, RegionKeepsOnlyItsLines) {
@@ -439,9 +500,16 @@ TEST_F(RecognizerTest, RefusesModelsBeyondCapacityAndDuplicates) {
     ASSERT_EQ(TheRecognizer().AddModel(view), RecognizerError::kDuplicateModel);
     ASSERT_EQ(TheRecognizer().models().size(), id);
   }
+  const StereoImages frame = testing::GoldenFrame(0);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  const std::string before = testing::DumpAll(TheRecognizer(), result_);
   view.id = kMaxModels + 1;
   EXPECT_EQ(TheRecognizer().AddModel(view), RecognizerError::kTooManyModels);
   EXPECT_EQ(TheRecognizer().models().size(), kMaxModels);
+  EXPECT_EQ(TheRecognizer().prepared_models().size(), kMaxModels);
+  EXPECT_EQ(TheRecognizer().searched(), 0xFFFFFFFFU);
+  ASSERT_EQ(Process(frame, result_), RecognizerError::kOk);
+  EXPECT_EQ(testing::DumpAll(TheRecognizer(), result_), before);
   TheRecognizer().ClearModels();
   EXPECT_TRUE(TheRecognizer().models().empty());
   EXPECT_EQ(TheRecognizer().AddModel(view), RecognizerError::kOk);
@@ -484,7 +552,12 @@ TEST(Messages, NameEveryError) {
   EXPECT_EQ(texts.size(), static_cast<std::size_t>(RecognizerError::kBadDepthUnit) + 1);
 }
 
-// Everything is part of the object: the budget of the whole recognizer, 640 x 480 and 16 models.
+TEST(Messages, TooManyModelsNamesTheLimit) {
+  EXPECT_EQ(Describe(RecognizerError::kTooManyModels),
+            "too many models; at most " + std::to_string(kMaxModels) + " are searched for at once");
+}
+
+// Everything is part of the object: the budget of the whole recognizer, 640 x 480 and 32 models.
 TEST(Memory, IsStatic) {
   RecordProperty("bytes", std::to_string(sizeof(Recognizer)));
   printf("Recognizer: %.1f MiB\n", static_cast<double>(sizeof(Recognizer)) / (1 << 20));

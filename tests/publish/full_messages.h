@@ -24,7 +24,7 @@ inline FrameReport FullFrame(std::mt19937& random) {
   FrameReport report = RandomReport(random, kMaxDetections);
   report.models = FullLabels();
   for (Detection& detection : report.result.detections) {
-    detection.model_id = 115;
+    detection.model_id = 100 + kMaxModels - 1;
     detection.track_id = 4'000'000'000;
     while (!detection.modes.full()) detection.modes.push_back({RandomPose(random), 0.25F});
   }

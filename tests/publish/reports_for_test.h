@@ -38,6 +38,13 @@ inline ModelView MakeModel(std::uint32_t id, std::string_view name) {
   return model;
 }
 
+// As many as there can be, with ids from 100 on; the first and the last are searched for.
+inline ModelLabels AllLabels() {
+  FixedVector<ModelView, kMaxModels> models;
+  while (!models.full()) models.push_back(MakeModel(100 + static_cast<std::uint32_t>(models.size()), "box"));
+  return LabelsOf({models.begin(), models.end()}, 1U | 1U << (kMaxModels - 1));
+}
+
 // `count` detections of model 7; detection i has i % 5 modes. Labels of models 3 and 7.
 inline FrameReport RandomReport(std::mt19937& random, std::size_t count) {
   FrameReport report;

@@ -2,8 +2,10 @@
 // publisher to a reader.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "../dds_domain.h"
@@ -204,6 +206,60 @@ TEST_F(WireTest, WhoComesLateGetsTheLastHealth) {
   EXPECT_EQ(received->value.rows.varying_px, 0.125F);
   ASSERT_EQ(received->value.models._length, 1u);
   EXPECT_EQ(received->value.models._buffer[0].checksum, 0xC0FFEE07U);
+}
+
+TEST_F(WireTest, HealthAndDiagnosticsNameAsManyModelsAsThereCanBe) {
+  const dds_entity_t health_reader = MatchedReader(TopicId::kHealth);
+  const dds_entity_t diagnostics_reader = MatchedReader(TopicId::kDiagnostics);
+  HealthReport report;
+  report.models = test::AllLabels();
+  publisher_->Publish(report);
+  const auto health = std::make_unique<HealthMessage>();
+  Take(health_reader, &health->value);
+  ASSERT_EQ(health->value.models._length, kMaxModels);
+  const auto diagnostics = std::make_unique<DiagnosticsMessage>();
+  Take(diagnostics_reader, &diagnostics->value);
+  const auto& values = diagnostics->value.status._buffer[3].values;
+  ASSERT_EQ(values._length, kMaxModels);
+  for (std::uint32_t i = 0; i < kMaxModels; ++i) {
+    const bool searched = i == 0 || i == kMaxModels - 1;
+    EXPECT_EQ(health->value.models._buffer[i].id, 100 + i);
+    EXPECT_EQ(health->value.models._buffer[i].checksum, 0xC0FFEE00U + 100 + i);
+    EXPECT_EQ(health->value.models._buffer[i].searched, searched) << i;
+    const std::string value = values._buffer[i].value;
+    EXPECT_EQ(value.rfind("id " + std::to_string(100 + i) + ",", 0), 0u) << value;
+    EXPECT_EQ(value.find("not searched for") == std::string::npos, searched) << value;
+  }
+  EXPECT_EQ(publisher_->write_errors(), 0u);
+}
+
+TEST_F(WireTest, ACommandSelectsAsManyModelsAsThereCanBe) {
+  const dds_entity_t answers = MatchedReader(TopicId::kCommandStatus);
+  const Result<dds_entity_t, std::string> commands = bus_->CreateWriter(TopicId::kCommand);
+  ASSERT_TRUE(commands) << commands.error();
+  WaitUntil([&] {
+    dds_publication_matched_status_t status{};
+    dds_get_publication_matched_status(*commands, &status);
+    return status.current_count > 0;
+  });
+  const auto sent = std::make_unique<CommandMessage>();
+  sent->value.action = wirepose_SELECT_MODELS;
+  auto& ids = sent->value.model_ids;
+  std::iota(ids._buffer, ids._buffer + ids._maximum, 0x80000000U);
+  ids._length = ids._maximum;
+  ASSERT_EQ(dds_write(*commands, &sent->value), 0);
+  Command command;
+  WaitUntil([&] { return publisher_->TakeCommand(command); });
+  ASSERT_EQ(command.model_ids.size(), kMaxModels);
+  CommandAnswer answer;
+  answer.command = command;
+  answer.accepted = true;
+  answer.searched_ids = command.model_ids;
+  publisher_->Answer(answer);
+  const auto received = std::make_unique<CommandStatusMessage>();
+  Take(answers, &received->value);
+  ASSERT_EQ(received->value.searched_ids._length, kMaxModels);
+  EXPECT_TRUE(std::equal(ids._buffer, ids._buffer + kMaxModels, received->value.searched_ids._buffer));
 }
 
 // What is only for the eye is gathered and sent only while somebody subscribes to it; each frame asks again.

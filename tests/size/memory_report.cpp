@@ -8,7 +8,7 @@
 namespace wirepose {
 namespace {
 
-constexpr std::size_t kBudget = 8 * 1024 * 1024;  // docs/memory.md: at 640 x 480 with 16 models
+constexpr std::size_t kBudget = 8 * 1024 * 1024;  // docs/memory.md: at 640 x 480 with 32 models
 constexpr std::size_t kMayBeMissing = 16 * 1024;  // parameters, counts and padding, which have no row
 
 struct Member {

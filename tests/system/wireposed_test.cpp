@@ -264,6 +264,9 @@ TEST_F(RefusalTest, Models) {
   Expect(Robot(config, {"--models", empty.string()}), 1, {"empty", "no .wpm file"});
   const std::string good = (folder_ / "parcel_box.wpm").string();
   Expect(Robot(config, {"--models", good, good}), 1, {"parcel_box.wpm", "same id"});
+  std::vector<std::string> too_many(kMaxModels + 2, good);
+  too_many[0] = "--models";
+  Expect(Robot(config, too_many), 1, {"one model too many", "at most " + std::to_string(kMaxModels)});
 
   const std::filesystem::path bad = folder_ / "bad.wpm";
   std::ofstream(bad) << "not a model";
