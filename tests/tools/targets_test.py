@@ -102,11 +102,36 @@ class Verdicts(unittest.TestCase):
 class Table(unittest.TestCase):
     def test_has_every_row_and_says_why_one_is_empty(self):
         values = targets.figures([run([hit(0.9)], [])])
-        rows = targets.table({"kitchen-sample": values}, {"kitchen-sample": values}, {"simulated suite": "not rendered"})
+        rows = targets.table({"kitchen-sample": values}, {"pcl": {"kitchen-sample": values}},
+                             {"simulated suite": "not rendered"})
         self.assertEqual(len(rows), sum(len(t) for t in targets.TARGETS.values()))
         self.assertEqual({r[5] for r in rows if r[0] == "simulated suite"}, {"not rendered"})
         recall = next(r for r in rows if r[:2] == ["kitchen-sample", "recall"])
-        self.assertEqual(recall[4:], ["1 (1 of 1)", "goal", "1 (1 of 1)"])
+        self.assertEqual(recall[4:], ["1 (1 of 1)", "goal", "–", "1 (1 of 1)"])
+
+    def test_keeps_the_columns_of_peers_that_were_not_measured(self):
+        values = targets.figures([run([hit(0.9)], [])])
+        peers = {"ppf": {"kitchen-sample": values}, "pcl": {"kitchen-sample": values}}
+        note = targets.peer_note(targets.PEERS[0], "`peer_ppf` at abc")
+        document = targets.put_between_marks("", note + "\n\n" + targets.as_markdown(targets.table({}, peers, {})))
+        kept = targets.kept_columns(document)
+        self.assertEqual(kept["ppf"].note, note)
+        self.assertIn("earlier", kept["pcl"].note)
+        worse = targets.figures([run([hit(0.9), miss()], [])])
+        rows = targets.table({}, {"pcl": {"teabox-stereo": worse}}, {}, kept)
+        recall = {r[0]: r[6:] for r in rows if r[1] == "recall"}
+        self.assertEqual(recall["kitchen-sample"], ["1 (1 of 1)", "–"])  # measured anew: no cell of before beside it
+        self.assertEqual(recall["teabox-stereo"], ["–", "0.5 (1 of 2)"])
+
+    def test_keeps_the_column_of_a_table_with_one_peer(self):
+        table = ("| data | measure | must | goal | Wirepose | verdict | OpenCV PPF + ICP |\n|---|---|---|---|---|---|---|\n"
+                 "| teabox-stereo | recall | 1 | 1 | 1 (8 of 8) | goal | 0.5 (4 of 8) |")
+        kept = targets.kept_columns(targets.put_between_marks("", table))
+        self.assertEqual(kept["ppf"].cells, {("teabox-stereo", "recall"): "0.5 (4 of 8)"})
+        self.assertEqual(list(kept), ["ppf"])
+
+    def test_keeps_nothing_of_a_document_without_a_table(self):
+        self.assertEqual(targets.kept_columns("| data | measure | OpenCV PPF + ICP |"), {})
 
     def test_takes_the_place_of_the_old_one(self):
         once = targets.put_between_marks("# Results\n\ntext\n", "first")

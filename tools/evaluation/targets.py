@@ -19,6 +19,23 @@ class Target:
     low: float = None
 
 
+@dataclass(frozen=True)
+class Peer:
+    """A public recognizer with its own column, run on PEER_SETS by a program that is built where `package` is installed."""
+    name: str
+    column: str
+    what: str
+    package: str
+
+    @property
+    def program(self):
+        return f"peer_{self.name}"
+
+
+PEERS = [Peer("ppf", "OpenCV PPF + ICP", "OpenCV's surface_matching", "libopencv-contrib-dev"),
+         Peer("pcl", "PCL FPFH + ICP", "PCL's SampleConsensusPrerejective", "libpcl-dev")]
+
+
 def higher(measure, must, goal):
     return Target(measure, must, goal, higher_is_better=True)
 
@@ -38,6 +55,7 @@ TARGETS = {
                           Target("frame, CPU ms", 20, 5)],
     "object-free scenes": [Target("false alarms per frame", 1 / 300, 1 / 3000)],
 }
+PEER_SETS = ["kitchen-sample", "teabox-stereo"]
 SUITE_RANGE_MM = (400, 2000)  # the suite's targets hold for objects in this range
 NEAR_1M_MM = (800, 1200)      # "at 1 m"
 
@@ -153,21 +171,57 @@ def causes_markdown(causes_by_data):
     return "\n".join(lines)
 
 
-HEADING = ["data", "measure", "must", "goal", "Wirepose", "verdict", "OpenCV PPF + ICP"]
+HEADING = ["data", "measure", "must", "goal", "Wirepose", "verdict", *[p.column for p in PEERS]]
 
 
-def table(measured, peers, absent):
-    """Rows of text. `measured`, `peers`: figures by data set; `absent`: why a data set was not measured."""
+def table(measured, peers, absent, kept=None):
+    """Rows of text. `measured`: figures by data set; `peers`: the same by peer's name; `absent`: why a data set was not
+    measured; `kept`: KeptColumn by peer's name, for peers that were not measured."""
     rows = []
     for data, targets in TARGETS.items():
         for target in targets:
             values = measured.get(data)
             ours = shown(target, values) if values else "–"
             said = verdict(target, values) if values else absent.get(data, "not measured")
-            # A peer's score claims no probability and its pose no covariance.
-            theirs = shown(target, peers[data]) if data in peers and target not in HONEST else "–"
-            rows.append([data, target.measure, *bounds(target), ours, said, theirs])
+            theirs = [peer_cell(p, data, target, peers, kept or {}) for p in PEERS]
+            rows.append([data, target.measure, *bounds(target), ours, said, *theirs])
     return rows
+
+
+def peer_cell(peer, data, target, peers, kept):
+    if peer.name not in peers:
+        return kept[peer.name].cells.get((data, target.measure), "–") if peer.name in kept else "–"
+    # A peer's score claims no probability and its pose no covariance.
+    return shown(target, peers[peer.name][data]) if data in peers[peer.name] and target not in HONEST else "–"
+
+
+@dataclass(frozen=True)
+class KeptColumn:
+    """A peer's column of an earlier table: cells by (data, measure), and the line that says what they are."""
+    cells: dict
+    note: str
+
+
+def peer_note(peer, text):
+    """The line of the document that says what a peer's column is."""
+    return f"- {peer.column}: {text}"
+
+
+def kept_columns(document):
+    """KeptColumn by peer's name: the peers' columns of the table that `document` has between the marks."""
+    lines = document.partition(BEGIN)[2].partition(END)[0].splitlines()
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("|")]
+    heading = next((row for row in rows if row[:2] == HEADING[:2]), [])
+    kept = {}
+    for peer in PEERS:
+        if peer.column not in heading:
+            continue
+        k = heading.index(peer.column)
+        cells = {(row[0], row[1]): row[k] for row in rows if len(row) == len(heading) and row[0] in TARGETS}
+        note = next((line for line in lines if line.startswith(peer_note(peer, ""))),
+                    peer_note(peer, f"`{peer.program}`, kept from an earlier table."))
+        kept[peer.name] = KeptColumn(cells, note)
+    return kept
 
 
 def as_markdown(rows):

@@ -13,33 +13,7 @@ namespace {
 constexpr int kAngles = 30;  // bins of PPF angles
 constexpr std::size_t kVoted = 4000, kClusters = 1500, kVerified = 400, kAligned = 30;
 constexpr double kClusterD = 0.1, kClusterTurn = 18 * CV_PI / 180;
-constexpr double kLargePlaneD = 1.12;  // planes larger than this are no part of the object
 constexpr double kSurfaceStepD = 0.03;
-
-// Points all over the triangles, `step_m` apart, with outward normals.
-std::vector<OrientedPoint> Sample(const mesh::Mesh& mesh, double step_m) {
-  double volume = 0;
-  const auto corner = [&](const std::array<int, 3>& t, std::size_t k) {
-    return mesh.vertices[static_cast<std::size_t>(t[k])];
-  };
-  for (const auto& t : mesh.triangles) volume += corner(t, 0).dot(corner(t, 1).cross(corner(t, 2)));
-  std::vector<OrientedPoint> points;
-  cv::RNG random(7);
-  for (const auto& t : mesh.triangles) {
-    const Eigen::Vector3d a = corner(t, 0), ab = corner(t, 1) - a, ac = corner(t, 2) - a;
-    const Eigen::Vector3d normal = ab.cross(ac) * (volume > 0 ? 1 : -1);
-    if (normal.norm() < 1e-12) continue;
-    const Eigen::Vector3f n = normal.normalized().cast<float>();
-    const int count = std::max(1, cvCeil(normal.norm() / 2 / (step_m * step_m)));
-    for (int i = 0; i < count; ++i) {
-      double u = random.uniform(0.0, 1.0), v = random.uniform(0.0, 1.0);
-      if (u + v > 1) u = 1 - u, v = 1 - v;
-      const Eigen::Vector3f p = (a + u * ab + v * ac).cast<float>();
-      points.push_back({{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}});
-    }
-  }
-  return points;
-}
 
 cv::Mat ToMat(const std::vector<OrientedPoint>& points) {
   cv::Mat mat(static_cast<int>(points.size()), 6, CV_32F);
@@ -53,7 +27,7 @@ cv::Mat ToMat(const std::vector<OrientedPoint>& points) {
   return mat;
 }
 
-cv::Matx44d ToMatrix(const SurfacePose& pose) {
+cv::Matx44d ToMatrix(const FoundPose& pose) {
   cv::Matx44d T = cv::Matx44d::eye();
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) T(i, j) = pose.R(i, j);
@@ -62,62 +36,13 @@ cv::Matx44d ToMatrix(const SurfacePose& pose) {
   return T;
 }
 
-SurfacePose FromMatrix(const cv::Matx44d& T) {
-  SurfacePose pose;
+FoundPose FromMatrix(const cv::Matx44d& T) {
+  FoundPose pose;
   cv::Mat w, u, vt;
   cv::SVD::compute(cv::Mat(T.get_minor<3, 3>(0, 0)), w, u, vt);  // OpenCV's rotations are not quite orthogonal
   pose.R = cv::Matx33d(cv::Mat(u * vt));
   pose.t = {T(0, 3), T(1, 3), T(2, 3)};
   return pose;
-}
-
-// Points that may belong to an object of this size: with a normal and not on a larger plane.
-std::vector<OrientedPoint> Candidates(const DenseCloud& cloud, double diameter_m) {
-  std::vector<OrientedPoint> points;
-  for (int y = 0; y < cloud.points.rows; ++y) {
-    for (int x = 0; x < cloud.points.cols; ++x) {
-      const int region = cloud.regions(y, x);
-      if (region < 0) continue;
-      if (static_cast<double>(cloud.extents[static_cast<std::size_t>(region)]) > kLargePlaneD * diameter_m) continue;
-      points.push_back({cloud.points(y, x), cloud.normals(y, x)});
-    }
-  }
-  return points;
-}
-
-std::vector<OrientedPoint> Near(const std::vector<OrientedPoint>& points, const cv::Vec3f& centre, double radius_m) {
-  std::vector<OrientedPoint> near;
-  for (const OrientedPoint& p : points) {
-    if (cv::norm(p.point - centre) < radius_m) near.push_back(p);
-  }
-  return near;
-}
-
-std::vector<std::vector<OrientedPoint>> Tiles(const std::vector<OrientedPoint>& scene, double diameter_m) {
-  constexpr std::size_t kFewest = 20;
-  std::map<std::array<int, 3>, std::pair<cv::Vec3f, int>> cells;
-  for (const OrientedPoint& p : scene) {
-    std::array<int, 3> key{};
-    for (int k = 0; k < 3; ++k)
-      key[static_cast<std::size_t>(k)] = cvFloor(static_cast<double>(p.point[k]) / (0.5 * diameter_m));
-    auto& [sum, count] = cells[key];
-    sum += p.point;
-    ++count;
-  }
-  std::vector<std::vector<OrientedPoint>> tiles;
-  for (const auto& [key, cell] : cells) {
-    if (cell.second < 4) continue;
-    auto tile = Near(scene, cell.first / static_cast<float>(cell.second), 0.6 * diameter_m);
-    if (tile.size() >= kFewest) tiles.push_back(std::move(tile));
-  }
-  return tiles;
-}
-
-bool Better(const SurfacePose& p, const SurfacePose& q) { return p.score > q.score; }
-
-void KeepBest(std::vector<SurfacePose>& poses, std::size_t most) {
-  std::stable_sort(poses.begin(), poses.end(), Better);
-  if (poses.size() > most) poses.resize(most);
 }
 
 std::vector<cv::Matx33d> RotationsOf(const evaluation::ObjectTruth& object) {
@@ -143,11 +68,11 @@ SurfaceSearch::SurfaceSearch(const mesh::Mesh& mesh, const evaluation::ObjectTru
   detector_.trainModel(ToMat(Thin(dense, step_ * diameter_m_)));
 }
 
-void SurfaceSearch::MatchTile(const std::vector<OrientedPoint>& tile, std::vector<SurfacePose>& poses) {
+void SurfaceSearch::MatchTile(const std::vector<OrientedPoint>& tile, std::vector<FoundPose>& poses) {
   std::vector<cv::ppf_match_3d::Pose3DPtr> found;
   detector_.match(ToMat(tile), found, 1.0 / 5, std::max(0.008, step_ * 0.4));
   for (const auto& vote : found) {
-    SurfacePose pose = FromMatrix(vote->pose);
+    FoundPose pose = FromMatrix(vote->pose);
     pose.score = static_cast<double>(vote->numVotes);
     // OpenCV takes the lower end of the angle's bin for its middle: turn by the other half about the point's normal.
     const float* reference = detector_.points().ptr<float>(static_cast<int>(vote->modelIndex));
@@ -171,11 +96,11 @@ double SurfaceSearch::TurnBetween(const cv::Matx33d& a, const cv::Matx33d& b) co
   return least;
 }
 
-std::vector<SurfacePose> SurfaceSearch::Cluster(std::vector<SurfacePose> poses) const {
+std::vector<FoundPose> SurfaceSearch::Cluster(std::vector<FoundPose> poses) const {
   KeepBest(poses, kVoted);
-  std::vector<SurfacePose> clusters;
-  for (const SurfacePose& p : poses) {
-    const auto same = [&](const SurfacePose& c) {
+  std::vector<FoundPose> clusters;
+  for (const FoundPose& p : poses) {
+    const auto same = [&](const FoundPose& c) {
       return cv::norm(p.t - c.t) < kClusterD * diameter_m_ && TurnBetween(p.R, c.R) < kClusterTurn;
     };
     const auto found = std::find_if(clusters.begin(), clusters.end(), same);
@@ -189,7 +114,7 @@ std::vector<SurfacePose> SurfaceSearch::Cluster(std::vector<SurfacePose> poses) 
   return clusters;
 }
 
-double SurfaceSearch::Verify(const DenseCloud& cloud, const SurfacePose& pose, double tolerance_factor,
+double SurfaceSearch::Verify(const DenseCloud& cloud, const FoundPose& pose, double tolerance_factor,
                              std::vector<OrientedPoint>* visible) const {
   struct Seen {
     cv::Vec3d point, normal;
@@ -245,7 +170,7 @@ double SurfaceSearch::Verify(const DenseCloud& cloud, const SurfacePose& pose, d
   return agrees + violates + hidden + outside < 5 ? -1 : (agrees - violates) / all;
 }
 
-void SurfaceSearch::Align(const DenseCloud& cloud, const std::vector<OrientedPoint>& scene, SurfacePose& pose) const {
+void SurfaceSearch::Align(const DenseCloud& cloud, const std::vector<OrientedPoint>& scene, FoundPose& pose) const {
   std::vector<OrientedPoint> visible;
   Verify(cloud, pose, 1, &visible);
   const auto around = Thin(Near(scene, cv::Vec3f(pose.t), 0.62 * diameter_m_), 0.015 * diameter_m_);
@@ -260,30 +185,29 @@ void SurfaceSearch::Align(const DenseCloud& cloud, const std::vector<OrientedPoi
   } catch (const cv::Exception&) {
     return;  // it fails on degenerate correspondences
   }
-  SurfacePose aligned = FromMatrix(correction * start);
+  FoundPose aligned = FromMatrix(correction * start);
   if (!(aligned.t[2] > 0.1)) return;
   aligned.score = Verify(cloud, aligned, 1, nullptr);
   if (aligned.score > pose.score) pose = aligned;
 }
 
-std::vector<SurfacePose> SurfaceSearch::Find(const DenseCloud& cloud, std::size_t most) {
+std::vector<FoundPose> SurfaceSearch::DoFind(const DenseCloud& cloud, std::size_t most) {
   const auto scene = Candidates(cloud, diameter_m_);
-  std::vector<SurfacePose> poses;
-  for (const auto& tile : Tiles(Thin(scene, step_ * diameter_m_), diameter_m_)) MatchTile(tile, poses);
+  const auto thin = Thin(scene, step_ * diameter_m_);
+  std::vector<FoundPose> poses;
+  for (const auto& indices : Tiles(thin, diameter_m_)) {
+    std::vector<OrientedPoint> tile;
+    for (const int i : indices) tile.push_back(thin[static_cast<std::size_t>(i)]);
+    MatchTile(tile, poses);
+  }
   poses = Cluster(std::move(poses));
-  for (SurfacePose& p : poses) p.score = Verify(cloud, p, 2.2, nullptr);
+  for (FoundPose& p : poses) p.score = Verify(cloud, p, 2.2, nullptr);
   KeepBest(poses, kAligned);
-  for (SurfacePose& p : poses) {
+  for (FoundPose& p : poses) {
     p.score = Verify(cloud, p, 1, nullptr);
     Align(cloud, scene, p);
   }
-  KeepBest(poses, kAligned);
-  std::vector<SurfacePose> apart;
-  for (const SurfacePose& p : poses) {
-    const auto near = [&](const SurfacePose& q) { return cv::norm(p.t - q.t) < 0.25 * diameter_m_; };
-    if (apart.size() < most && std::none_of(apart.begin(), apart.end(), near)) apart.push_back(p);
-  }
-  return apart;
+  return KeepApart(std::move(poses), 0.25 * diameter_m_, most);
 }
 
 }  // namespace wirepose::bench

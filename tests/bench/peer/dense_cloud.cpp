@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -176,36 +175,6 @@ DenseCloud MakeCloud(const StereoRig& rig, const StereoRig::Rectified& pair) {
     }
   }
   return cloud;
-}
-
-std::vector<OrientedPoint> Thin(const std::vector<OrientedPoint>& points, double step_m) {
-  constexpr float kSameNormal = 0.85F;
-  struct Sum {
-    cv::Vec3f point, normal;
-    int count;
-  };
-  std::map<std::array<int, 3>, std::vector<Sum>> cells;
-  for (const OrientedPoint& p : points) {
-    std::array<int, 3> key{};
-    for (int k = 0; k < 3; ++k) key[static_cast<std::size_t>(k)] = cvFloor(static_cast<double>(p.point[k]) / step_m);
-    std::vector<Sum>& cell = cells[key];
-    const auto same = [&](const Sum& s) {
-      return s.normal.dot(p.normal) > kSameNormal * static_cast<float>(cv::norm(s.normal));
-    };
-    const auto found = std::find_if(cell.begin(), cell.end(), same);
-    if (found == cell.end()) {
-      cell.push_back({p.point, p.normal, 1});
-      continue;
-    }
-    found->point += p.point;
-    found->normal += p.normal;
-    ++found->count;
-  }
-  std::vector<OrientedPoint> thin;
-  for (const auto& [key, cell] : cells) {
-    for (const Sum& s : cell) thin.push_back({s.point / static_cast<float>(s.count), s.normal / cv::norm(s.normal)});
-  }
-  return thin;
 }
 
 }  // namespace wirepose::bench

@@ -1,16 +1,12 @@
-// What a user of OpenCV would give surface_matching: an organised cloud from StereoSGBM.
-#ifndef WIREPOSE_TESTS_BENCH_PEER_PPF_DENSE_CLOUD_H_
-#define WIREPOSE_TESTS_BENCH_PEER_PPF_DENSE_CLOUD_H_
+// What a user of OpenCV or PCL would give a recognizer: an organised cloud from StereoSGBM.
+#ifndef WIREPOSE_TESTS_BENCH_PEER_DENSE_CLOUD_H_
+#define WIREPOSE_TESTS_BENCH_PEER_DENSE_CLOUD_H_
 
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <vector>
 
 namespace wirepose::bench {
-
-struct OrientedPoint {
-  cv::Vec3f point, normal;  // m; normal of unit length
-};
 
 // A calibrated pair, rectified by OpenCV itself.
 class StereoRig {
@@ -47,9 +43,6 @@ struct DenseCloud {
 
 DenseCloud MakeCloud(const StereoRig& rig, const StereoRig::Rectified& pair);
 
-// One mean point a cell of `step_m`; points of different orientation are kept apart. In a fixed order.
-std::vector<OrientedPoint> Thin(const std::vector<OrientedPoint>& points, double step_m);
-
 }  // namespace wirepose::bench
 
-#endif  // WIREPOSE_TESTS_BENCH_PEER_PPF_DENSE_CLOUD_H_
+#endif  // WIREPOSE_TESTS_BENCH_PEER_DENSE_CLOUD_H_
