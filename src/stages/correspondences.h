@@ -48,11 +48,10 @@ using CorrespondingPairs = KeepBestOfMany<CorrespondingPair, kMaxCorrespondences
 
 // Every image pair whose parameter vector agrees with that of a model pair. Lengths are unreliable: a segment may be
 // any part of its edge that is not too short, but it cannot be longer. Symmetric models are searched from one edge of
-// each symmetry orbit. Pairs are ranked by how V agrees under its own sigma, by length and cover of the lines, and by how
-// many other lines fit the same assignment of the base (pair_rank.h); members too far off to be kept are neither made
-// nor counted. O(pairs * representative base edges *
-// members), at most `max_steps`: base lines come by falling length, and those for which no steps are left are not
-// searched. Returns false when that happened.
+// each symmetry orbit. Pairs are ranked by how V agrees under its own sigma, by length and cover of the lines, and by
+// how many other lines fit the same assignment of the base (pair_rank.h); members too far off to be kept are neither
+// made nor counted. O(pairs * representative base edges * members), at most `max_steps`: base lines come by falling
+// length, and those for which no steps are left are not searched. Returns false when that happened.
 bool FindCorrespondences(const CorrespondenceParams& params, const RectifiedCamera& camera, const PreparedModel& model,
                          const Lines3& lines, const ImageLineSets& sets, CorrespondingPairs& out);
 

@@ -36,9 +36,9 @@ struct ImageLinePair {
   float angle_sigma_rad = 0;
   float distance_m = 0;  // lambda, between the infinite lines
   float distance_sigma_m = 0;
-  float farthest_end_m = 0;  // rho or theta
+  float farthest_end_m = 0;                           // rho or theta
   float log_angle_sigma = 0, log_distance_sigma = 0;  // as quality counts them
-  float quality = 0;         // log of what the pair tells: long lines, well known V
+  float quality = 0;                                  // log of what the pair tells: long lines, well known V
 };
 
 // A pair before it is measured: all that the choice of pairs needs.

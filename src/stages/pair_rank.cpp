@@ -8,9 +8,9 @@ namespace wirepose {
 
 const std::array<const char*, kPairTerms>& PairTermNames() {
   static constexpr std::array<const char*, kPairTerms> kNames = {
-      "base_px",     "other_px",    "angle_sigma",         "distance_sigma", "depth",         "meet",
-      "base_edge",   "base_cover",  "base_cover_squared",  "other_edge",     "other_cover",   "other_cover_squared",
-      "reach",       "reach_squared", "angle_squared",     "distance_squared", "promotion"};
+      "base_px",   "other_px",      "angle_sigma",        "distance_sigma",   "depth",       "meet",
+      "base_edge", "base_cover",    "base_cover_squared", "other_edge",       "other_cover", "other_cover_squared",
+      "reach",     "reach_squared", "angle_squared",      "distance_squared", "promotion"};
   return kNames;
 }
 
@@ -43,8 +43,7 @@ float PairRanker::OfPair(PairClass c, const ImageLinePair& pair) const {
                w[PairTerm::kDepth] * log_depth_[pair.base];
   if (pair.base_end != LineEnd::kNone) rank += w[PairTerm::kMeet];
   if (!pair.metric) return rank;
-  return rank + w[PairTerm::kAngleSigma] * pair.log_angle_sigma +
-         w[PairTerm::kDistanceSigma] * pair.log_distance_sigma;
+  return rank + w[PairTerm::kAngleSigma] * pair.log_angle_sigma + w[PairTerm::kDistanceSigma] * pair.log_distance_sigma;
 }
 
 float PairRanker::OfBase(PairClass c, std::size_t edge, float cover) const {

@@ -21,8 +21,8 @@ enum class PairClass : std::uint8_t {
 };
 inline constexpr std::size_t kPairClasses = 4;
 
-// Terms of the rank. Logarithms are natural; covers and reach are at most 1. Without depth: 0 from kOtherCover on but for
-// the last.
+// Terms of the rank. Logarithms are natural; covers and reach are at most 1. Without depth: 0 from kOtherCover on but
+// for the last.
 enum class PairTerm : std::uint8_t {
   // Of the image pair.
   kBasePx,         // log of the base line's length in the image
@@ -91,8 +91,8 @@ class PairRanker {
                               float other_cover) const;
   [[nodiscard]] float OfPromotions(PairClass c, int count) const;
 
-  // No member of the model and no promotion add more to the rank of a pair whose other line is `other_m` long (0 without
-  // depth).
+  // No member of the model and no promotion add more to the rank of a pair whose other line is `other_m` long (0
+  // without depth).
   [[nodiscard]] float Most(PairClass c, const ImageLinePair& pair, float other_m) const;
   // The loss by a difference of one standard deviation, above 0.
   [[nodiscard]] float LossOfAngle(PairClass c) const { return -Of(c)[PairTerm::kAngleSquared]; }

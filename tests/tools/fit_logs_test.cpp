@@ -52,10 +52,10 @@ class FitLogs : public ::testing::Test {
   static void SetUpTestSuite() {
     const testing::TemporaryFolder folder;
     ASSERT_NO_FATAL_FAILURE(testing::WriteReportDataset(folder.path()));
-    const auto run = RunIn(
-        folder.path(),
-        fmt::format("'{}' eval set --models models --out r.csv --candidates c.csv --sets s.csv --pairs p.csv",
-                    WIREPOSE_PROGRAM));
+    const auto run =
+        RunIn(folder.path(),
+              fmt::format("'{}' eval set --models models --out r.csv --candidates c.csv --sets s.csv --pairs p.csv",
+                          WIREPOSE_PROGRAM));
     ASSERT_EQ(run.status, 0) << run.err;
     sets_ = ReadRows(folder.path() / "s.csv", set_names_);
     pairs_ = ReadRows(folder.path() / "p.csv", pair_names_);

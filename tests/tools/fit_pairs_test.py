@@ -30,11 +30,12 @@ def load():
 def write_pairs(path, random, count):
     """Pairs whose odds rise with promotion and fall with angle_squared; distance_squared speaks for them, by chance."""
     terms = random.normal(size=(count, len(TERMS)))
+    kind = np.arange(count) % 4
+    for name in ('angle_sigma', 'angle_squared', 'distance_squared'):
+        terms[kind == 0, TERMS.index(name)] = 0  # has no depth
     log_odds = 2 * terms[:, TERMS.index('promotion')] - terms[:, TERMS.index('angle_squared')] \
         + 0.5 * terms[:, TERMS.index('distance_squared')] - 1
     right = random.random(count) < 1 / (1 + np.exp(-log_odds))
-    kind = np.arange(count) % 4
-    terms[kind == 0, TERMS.index('angle_sigma')] = 0
     rows = ['scene_id,im_id,obj_id,instance,weight,class,' + ','.join(TERMS)]
     for i in range(count):
         rows.append(f'{i % 40},{i},1,{0 if right[i] else -1},1,{kind[i]},' + ','.join(f'{v:.6g}' for v in terms[i]))

@@ -15,9 +15,9 @@ namespace wirepose::evaluation {
 // Writes one CSV row a pair: scene_id, im_id, obj_id, the true instance whose edges both lines show (its place in the
 // frame's truth; -1: none), how many pairs the row stands for, class, and the terms of pair_rank.h. Every base line is
 // matched by itself, so that hardly a pair is missing because others rank higher; of the wrong ones, one in
-// kWrongPerRow is written. Instances less than 40 % visible count as absent. Observes Process on the caller's thread and
-// passes every call on to `next`; `clock` does not time the writing. Holds references. A file that cannot be written
-// leaves ok() false.
+// kWrongPerRow is written. Instances less than 40 % visible count as absent. Observes Process on the caller's thread
+// and passes every call on to `next`; `clock` does not time the writing. Holds references. A file that cannot be
+// written leaves ok() false.
 class PairLog final : public StageObserver {
  public:
   static constexpr int kWrongPerRow = 200;
