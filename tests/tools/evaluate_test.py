@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""What scripts/evaluate makes of peers that run, that are missing, and that are left out; with programs that only pretend."""
+"""What scripts/evaluate makes of peers that run, that are missing, and that are left out, and of scenes without objects;
+with programs that only pretend."""
 import contextlib
 import importlib.machinery
 import importlib.util
@@ -26,7 +27,7 @@ def metrics(hits, misses):
             "negative_frames": 0, "fp_per_negative_frame": None, "total": {}, "per_frame": [{"cpu_s": 1}]}
 
 
-class Peers(unittest.TestCase):
+class PeersAndScenes(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -100,6 +101,16 @@ class Peers(unittest.TestCase):
         self.assertEqual((status, err), (0, ""))
         self.assertEqual(self.recall(), ["0.5 (1 of 2)", "0.25 (1 of 4)"])
         self.assertIn("first 2 frames", self.document.read_text())  # what the reused run was
+
+    def test_scenes_without_objects_are_counted_by_themselves(self):
+        (self.folder / "free/kitchens").mkdir(parents=True)
+        (self.folder / "free/kitchens/calib.yaml").write_text("")
+        self.pretend("wirepose", metrics(1, 1) | {"negative_frames": 50, "fp_per_negative_frame": 0.02})
+        status, _, err = self.run_script("--no-peer", "--object-free", str(self.folder / "free"))
+        self.assertEqual((status, err), (0, ""))
+        text = self.document.read_text()
+        self.assertRegex(text, r"\| object-free scenes \| false alarms per frame .*2 of 100")  # and those beside tea boxes
+        self.assertRegex(text, r"\| teabox-stereo \| recall .*1 of 2")
 
 
 if __name__ == "__main__":
