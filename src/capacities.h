@@ -28,7 +28,7 @@ inline constexpr std::size_t kMaxRowOffsets = 32;
 
 // Related pairs of image lines, by what they tell: 150 lines with depth make 11,000. Of 284 objects of the simulated
 // suite 239 have a right hypothesis with 3,072 pairs, 244 with this many and 248 with 8,192, which takes longer.
-inline constexpr std::size_t kMaxImageLinePairs = 5120;
+inline constexpr std::size_t kMaxImageLinePairs = 2048;
 // Corresponding line sets kept per model, by rank: the paper's "small number".
 inline constexpr std::size_t kMaxCorrespondences = 1536;
 inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose

@@ -17,10 +17,10 @@ float DistanceOfLines(const Line3& p, const Line3& q, const Vector3& u, const Ve
   return std::abs(between.dot(n)) / n.norm();
 }
 
+// Squared.
 float FarthestEnds(const Line3& p, const Line3& q) {
-  const float squared = std::max(
+  return std::max(
       {(p.a - q.a).squaredNorm(), (p.a - q.b).squaredNorm(), (p.b - q.a).squaredNorm(), (p.b - q.b).squaredNorm()});
-  return std::sqrt(squared);
 }
 
 // The nearest pair of end points in the image, and how far apart they are, squared.
@@ -46,86 +46,75 @@ float ImageSine(const Vector2& u, const Vector2& v) { return std::abs(u.x() * v.
 class PairMaker {
  public:
   PairMaker(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines)
-      : params_(params), lines_(lines) {
+      : params_(params), lines_(lines), f_(static_cast<float>(camera.f)) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       length_px_[i] = lines[i].segment.Length();
+      root_px_[i] = std::sqrt(length_px_[i]);
       image_direction_[i] = lines[i].segment.Direction();
-      log_length_[i] = Log(length_px_[i]);
       if (!lines[i].has_depth) continue;
+      depth_[i] = 0.5F * (lines[i].a.z() + lines[i].b.z());
       direction_[i] = lines[i].Direction();
       direction_sigma_[i] = DirectionSigma(camera, lines[i]);
       depth_sigma_[i] = DepthSigma(camera, lines[i]);
-      log_angle_[i] = Log(OfAngle(direction_sigma_[i]));
-      log_distance_[i] = Log(OfDistance(depth_sigma_[i]));
     }
   }
 
-  // No pair of these two lines has a higher quality, unless they meet: the joint sigmas are at least the larger ones.
-  [[nodiscard]] float QualityBound(std::size_t b, std::size_t o) const {
-    float bound = log_length_[b] + log_length_[o] + kRounding;
-    if (lines_[o].has_depth)
-      bound -= std::max(log_angle_[b], log_angle_[o]) + std::max(log_distance_[b], log_distance_[o]);
-    return bound;
-  }
-
-  // Two lines, and which of their ends meet. True when some do.
-  bool Join(std::size_t b, std::size_t o, ImageLinePair& pair) const {
-    const Line3& base = lines_[b];
-    const Line3& other = lines_[o];
+  // The quality of two lines, as if they met. False when they are too far apart to be related.
+  bool Rate(std::size_t b, std::size_t o, ImageLinePair& pair) const {
     pair = {};
     pair.base = static_cast<std::uint16_t>(b);
     pair.other = static_cast<std::uint16_t>(o);
-    const float ends_squared = NearestEnds(base.segment, other.segment, pair.base_end, pair.other_end);
-    const float reach = std::min(params_.junction_px, 4 + 0.3F * std::min(length_px_[b], length_px_[o]));
-    const bool junction = std::sqrt(ends_squared) < reach && ImageSine(image_direction_[b], image_direction_[o]) > 0.2F;
-    if (!junction) pair.base_end = pair.other_end = LineEnd::kNone;
-    return junction;
+    pair.metric = lines_[o].has_depth;
+    // Without depth: two lines in a row.
+    float reach = (length_px_[b] + length_px_[o]) / f_;
+    float reach_squared = reach * reach;
+    if (pair.metric) {
+      const float farthest_squared = FarthestEnds(lines_[b], lines_[o]);
+      const float limit = params_.max_reach_m + 3 * (depth_sigma_[b] + depth_sigma_[o]);
+      if (farthest_squared > limit * limit) return false;
+      reach_squared = farthest_squared / (depth_[b] * depth_[b]);
+    }
+    pair.quality = params_.junction_gain * root_px_[b] * root_px_[o] / reach_squared;
+    return true;
   }
 
-  // The quality of two joined lines, which tells whether the rest is worth the work. False when they are not related.
-  bool Rate(ImageLinePair& pair) const {
+  // Which ends of two rated lines meet. False when that leaves them unrelated.
+  bool Join(ImageLinePair& pair) const {
     const std::size_t b = pair.base, o = pair.other;
-    const bool junction = pair.base_end != LineEnd::kNone;
-    pair.quality = log_length_[b] + log_length_[o] + (junction ? params_.junction_quality : 0.0F);
-    if (!lines_[o].has_depth) return junction;
-    pair.metric = true;
-    pair.farthest_end_m = FarthestEnds(lines_[b], lines_[o]);
-    if (pair.farthest_end_m > params_.max_reach_m + 3 * (depth_sigma_[b] + depth_sigma_[o])) return false;
-    pair.angle_sigma_rad =
-        std::sqrt(direction_sigma_[b] * direction_sigma_[b] + direction_sigma_[o] * direction_sigma_[o]);
-    pair.distance_sigma_m = std::sqrt(depth_sigma_[b] * depth_sigma_[b] + depth_sigma_[o] * depth_sigma_[o]);
-    // Normalisation of the two Gaussians that V is compared with, relative to a rad of 1 and a distance of 1 cm.
-    pair.quality -= Log(OfAngle(pair.angle_sigma_rad) * OfDistance(pair.distance_sigma_m));
-    return true;
+    const float ends_squared = NearestEnds(lines_[b].segment, lines_[o].segment, pair.base_end, pair.other_end);
+    const float reach = std::min(params_.junction_px, 4 + 0.3F * std::min(length_px_[b], length_px_[o]));
+    if (ends_squared < reach * reach && ImageSine(image_direction_[b], image_direction_[o]) > 0.2F) return true;
+    pair.base_end = pair.other_end = LineEnd::kNone;
+    pair.quality /= params_.junction_gain;
+    return pair.metric;
   }
 
   // The whole pair of two lines that are related.
   void Make(std::size_t b, std::size_t o, ImageLinePair& pair) const {
-    Join(b, o, pair);
-    const bool related = Rate(pair);
-    Check(related);  // Rate said so when the pair was ranked
-    if (pair.metric) Measure(b, o, pair);
+    const bool related = Rate(b, o, pair) && Join(pair);
+    Check(related);  // they were when the pair was ranked
+    if (pair.metric) Measure(pair);
   }
 
  private:
   // The parameter vector of two lines with depth.
-  void Measure(std::size_t b, std::size_t o, ImageLinePair& pair) const {
+  void Measure(ImageLinePair& pair) const {
+    const std::size_t b = pair.base, o = pair.other;
     const Vector3 &u = direction_[b], &v = direction_[o];
     const float sine = std::min(1.0F, u.cross(v).norm());
     const float cosine = std::abs(u.dot(v));
     // atan2 of non-negative numbers by the rational approximation below: good to 0.005 rad, far below any sigma here.
     pair.angle_rad = Angle(sine, cosine);
+    pair.angle_sigma_rad =
+        std::sqrt(direction_sigma_[b] * direction_sigma_[b] + direction_sigma_[o] * direction_sigma_[o]);
     pair.kind = pair.angle_rad < params_.parallel_rad + pair.angle_sigma_rad ? LineSetKind::kParallel
                                                                              : LineSetKind::kIntersecting;
     pair.distance_m = DistanceOfLines(lines_[b], lines_[o], u, v, sine);
-    pair.log_angle_sigma = Log(OfAngle(pair.angle_sigma_rad));
-    pair.log_distance_sigma = Log(OfDistance(pair.distance_sigma_m));
+    pair.distance_sigma_m = std::sqrt(depth_sigma_[b] * depth_sigma_[b] + depth_sigma_[o] * depth_sigma_[o]);
+    pair.farthest_end_m = std::sqrt(FarthestEnds(lines_[b], lines_[o]));
+    pair.log_angle_sigma = Log(pair.angle_sigma_rad + 0.02F);
+    pair.log_distance_sigma = Log((pair.distance_sigma_m + 0.003F) / 0.01F);
   }
-
-  static constexpr float kRounding = 1e-3F;  // far more than what a bound may be too low by
-
-  static float OfAngle(float sigma_rad) { return sigma_rad + 0.02F; }
-  static float OfDistance(float sigma_m) { return (sigma_m + 0.003F) / 0.01F; }
 
   static float Angle(float sine, float cosine) {
     const bool steep = sine > cosine;
@@ -136,10 +125,12 @@ class PairMaker {
 
   const LineSetParams& params_;
   const Lines3& lines_;
-  std::array<float, kMaxSegments> direction_sigma_{}, depth_sigma_{}, log_length_{}, log_angle_{}, log_distance_{};
-  std::array<float, kMaxSegments> length_px_{};
+  float f_;
+  std::array<float, kMaxSegments> length_px_{}, root_px_{};
   std::array<Vector2, kMaxSegments> image_direction_;
-  std::array<Vector3, kMaxSegments> direction_;  // of lines with depth
+  // Of lines with depth.
+  std::array<float, kMaxSegments> depth_{}, direction_sigma_{}, depth_sigma_{};
+  std::array<Vector3, kMaxSegments> direction_;
 };
 
 // Counting sort of the kept pairs by base line. Within a base they stay in the order of quality. What was kept is
@@ -182,12 +173,10 @@ void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, co
     for (std::size_t o = 0; o < lines.size(); ++o) {
       // Of two lines with depth the longer one, which comes first, is the base: model sets hold both orders.
       if (o == b || (o < b && lines[o].has_depth)) continue;
-      // Most pairs are too weak to be kept: the sooner that is known, the better.
-      const float bound = maker.QualityBound(b, o);
-      if (!out.kept.WouldKeep({bound + params.junction_quality, 0, 0})) continue;
       ImageLinePair pair;
-      if (!maker.Join(b, o, pair) && !out.kept.WouldKeep({bound, 0, 0})) continue;
-      if (!maker.Rate(pair)) continue;
+      if (!maker.Rate(b, o, pair)) continue;
+      // Most pairs are too weak to be kept, even if they met.
+      if (!out.kept.WouldKeep({pair.quality, 0, 0}) || !maker.Join(pair)) continue;
       out.kept.Push({pair.quality, pair.base, pair.other});
     }
   }

@@ -17,7 +17,7 @@ struct LineSetParams {
   float parallel_rad = 0.18F;      // delta_phi: lines closer in direction than this plus their sigmas are parallel
   float max_reach_m = 2.0F;        // lines farther apart belong to no common object; set to the largest model diameter
   float min_depth_length_px = 12;  // of a base line
-  float junction_quality = 1;      // log quality that a junction adds
+  float junction_gain = 2.7F;      // factor on the quality of lines that meet
 };
 
 // Which ends of two lines meet.
@@ -37,8 +37,8 @@ struct ImageLinePair {
   float distance_m = 0;  // lambda, between the infinite lines
   float distance_sigma_m = 0;
   float farthest_end_m = 0;                           // rho or theta
-  float log_angle_sigma = 0, log_distance_sigma = 0;  // as quality counts them
-  float quality = 0;                                  // log of what the pair tells: long lines, well known V
+  float log_angle_sigma = 0, log_distance_sigma = 0;  // as the rank of corresponding pairs takes them (pair_rank.h)
+  float quality = 0;                                  // long lines near each other are more likely of one object
 };
 
 // A pair before it is measured: all that the choice of pairs needs.
@@ -68,8 +68,10 @@ struct ImageLineSets {
 static_assert(kMaxImageLinePairs <= 0xFFFF);
 
 // Every line with depth becomes a base line; its members are the lines with depth within reach, parallel or not, and
-// the lines without depth that meet it at a junction. When there are too many pairs, those of long, well measured lines
-// are kept; `dropped` counts those that were measured and given up, not those that could not have ranked at all.
+// the lines without depth that meet it at a junction. Of too many pairs those are kept that are most likely two edges of
+// one object: by the root of the product of both lengths in the image, over the square of the angle at which the farthest
+// ends of both are seen, and more when they meet. `dropped` counts those that were made and given up, not those that could
+// not have ranked at all.
 // O(lines^2 log pairs).
 void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines, ImageLineSets& out);
 
