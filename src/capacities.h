@@ -30,7 +30,7 @@ inline constexpr std::size_t kMaxRowOffsets = 32;
 // suite 239 have a right hypothesis with 3,072 pairs, 244 with this many and 248 with 8,192, which takes longer.
 inline constexpr std::size_t kMaxImageLinePairs = 2048;
 // Corresponding line sets kept per model, by rank: the paper's "small number".
-inline constexpr std::size_t kMaxCorrespondences = 1536;
+inline constexpr std::size_t kMaxCorrespondences = 1024;
 inline constexpr std::size_t kMaxSetLines = 8;  // lines of one corresponding set; more add nothing to a pose
 // Pose hypotheses kept per model after the coarse score. Many of them are one pose.
 inline constexpr std::size_t kMaxHypotheses = 128;

@@ -61,9 +61,11 @@ struct Steps {
   std::uint16_t small, large;
 };
 
-// One step of a path: L(d) = C(d) + min(L'(d), L'(d +- 1) + small, min L' + large) - min L'. Adds L to `sum`, writes it
-// to `out` (guards stay) and returns its minimum. `previous` and `out` point at disparity 0 behind the guard.
-inline std::uint16_t Advance(const std::uint16_t* cost, const std::uint16_t* previous, std::uint16_t lowest,
+// One step of a path: L(d) = C(d) + min(L'(d), L'(d +- 1) + small, min L' + large) - min L'. Adds L to `sum`, or puts it
+// there (kFirst), writes it to `out` (guards stay) and returns its minimum. `previous` and `out` point at disparity 0
+// behind the guard.
+template <bool kFirst>
+WIREPOSE_INLINE std::uint16_t Advance(const std::uint16_t* cost, const std::uint16_t* previous, std::uint16_t lowest,
                              Steps steps, std::uint16_t* out, std::uint16_t* sum) {
   const auto limit = static_cast<std::uint16_t>(lowest + steps.large);
   std::uint16_t least = 0xFFFF;
@@ -74,7 +76,7 @@ inline std::uint16_t Advance(const std::uint16_t* cost, const std::uint16_t* pre
     m = m < limit ? m : limit;
     const auto value = static_cast<std::uint16_t>(cost[d] + m - lowest);
     out[d] = value;
-    sum[d] = static_cast<std::uint16_t>(sum[d] + value);
+    sum[d] = static_cast<std::uint16_t>(kFirst ? value : sum[d] + value);
     least = least < value ? least : value;
   }
   return least;
@@ -85,29 +87,41 @@ void Reset(Scratch::Path& path) {
   path.front() = path.back() = kGuard;
 }
 
+// The paths of a row that are under way.
+struct RowPaths {
+  Scratch::Path from_left[2], from_right[2];
+  std::uint16_t left_lowest = 0, right_lowest = 0;
+};
+
+// All three paths one step on: at column x that from the left and that from above, at its mirror image that from the
+// right. Both directions at once: each waits for its own last step only. kFirst: nothing has been summed there yet.
+template <bool kFirst>
+WIREPOSE_INLINE void AdvanceAll(Steps steps, int width, int x, std::size_t parity, RowPaths& p, Scratch& scratch) {
+  const auto column = static_cast<std::size_t>(x);
+  const std::uint16_t* cost = scratch.cost.data() + x * kDepth;
+  std::uint16_t* sum = scratch.sum.data() + x * kDepth;
+  std::uint16_t& above_lowest = scratch.above_lowest[column];
+  const int mirrored = (width - 1 - x) * kDepth;
+  p.left_lowest = Advance<kFirst>(cost, p.from_left[x % 2].data() + 1, p.left_lowest, steps,
+                                  p.from_left[(x + 1) % 2].data() + 1, sum);
+  above_lowest = Advance<false>(cost, scratch.above[1 - parity][column].data() + 1, above_lowest, steps,
+                                scratch.above[parity][column].data() + 1, sum);
+  p.right_lowest = Advance<kFirst>(scratch.cost.data() + mirrored, p.from_right[x % 2].data() + 1, p.right_lowest, steps,
+                                   p.from_right[(x + 1) % 2].data() + 1, scratch.sum.data() + mirrored);
+}
+
 // Sums the three paths of a row into scratch.sum; rows alternate in `parity`.
 WIREPOSE_VECTOR_KERNEL void SumPaths(Steps steps, int width, std::size_t parity, Scratch& scratch) {
-  std::fill(scratch.sum.begin(), scratch.sum.begin() + static_cast<std::ptrdiff_t>(width) * kDepth, std::uint16_t{0});
-  Scratch::Path from_left[2], from_right[2];
+  RowPaths paths;
   for (std::size_t k = 0; k < 2; ++k) {
-    Reset(from_left[k]);
-    Reset(from_right[k]);
+    Reset(paths.from_left[k]);
+    Reset(paths.from_right[k]);
   }
-  std::uint16_t left_lowest = 0, right_lowest = 0;
-  // Both directions at once: each waits for its own last step only.
-  for (int x = 0; x < width; ++x) {
-    const std::uint16_t* cost = scratch.cost.data() + x * kDepth;
-    std::uint16_t* sum = scratch.sum.data() + x * kDepth;
-    left_lowest =
-        Advance(cost, from_left[x % 2].data() + 1, left_lowest, steps, from_left[(x + 1) % 2].data() + 1, sum);
-    const auto column = static_cast<std::size_t>(x);
-    std::uint16_t& above_lowest = scratch.above_lowest[column];
-    above_lowest = Advance(cost, scratch.above[1 - parity][column].data() + 1, above_lowest, steps,
-                           scratch.above[parity][column].data() + 1, sum);
-    const int mirrored = (width - 1 - x) * kDepth;
-    right_lowest = Advance(scratch.cost.data() + mirrored, from_right[x % 2].data() + 1, right_lowest, steps,
-                           from_right[(x + 1) % 2].data() + 1, scratch.sum.data() + mirrored);
-  }
+  // In the middle of an odd width both directions meet in one step.
+  std::fill_n(scratch.sum.begin() + static_cast<std::ptrdiff_t>(width / 2) * kDepth, kDepth, std::uint16_t{0});
+  int x = 0;
+  for (; x < width / 2; ++x) AdvanceAll<true>(steps, width, x, parity, paths, scratch);
+  for (; x < width; ++x) AdvanceAll<false>(steps, width, x, parity, paths, scratch);
 }
 
 // The first of the lowest sums: the lowest of each block of lanes, then the place in its block.
