@@ -5,9 +5,16 @@
 
 #include "base/check.h"
 #include "base/portable_math.h"
+#include "base/simd.h"
 
 namespace wirepose {
 namespace {
+
+float FarthestEnds(const Line3& p, const Line3& q) {
+  const float squared = std::max(
+      {(p.a - q.a).squaredNorm(), (p.a - q.b).squaredNorm(), (p.b - q.a).squaredNorm(), (p.b - q.b).squaredNorm()});
+  return std::sqrt(squared);
+}
 
 // `u`, `v`: the lines' directions.
 float DistanceOfLines(const Line3& p, const Line3& q, const Vector3& u, const Vector3& v, float sine) {
@@ -15,12 +22,6 @@ float DistanceOfLines(const Line3& p, const Line3& q, const Vector3& u, const Ve
   if (sine < 0.2F) return (between - between.dot(u) * u).norm();  // nearly parallel: distance of q's middle from p
   const Vector3 n = u.cross(v);
   return std::abs(between.dot(n)) / n.norm();
-}
-
-// Squared.
-float FarthestEnds(const Line3& p, const Line3& q) {
-  return std::max(
-      {(p.a - q.a).squaredNorm(), (p.a - q.b).squaredNorm(), (p.b - q.a).squaredNorm(), (p.b - q.b).squaredNorm()});
 }
 
 // The nearest pair of end points in the image, and how far apart they are, squared.
@@ -43,46 +44,80 @@ float NearestEnds(const Segment2& p, const Segment2& q, LineEnd& p_end, LineEnd&
 // Sine of the angle between two directions in the image.
 float ImageSine(const Vector2& u, const Vector2& v) { return std::abs(u.x() * v.y() - u.y() * v.x()); }
 
+// What the quality of pairs needs of all lines, number by number.
+struct LineArrays {
+  std::array<float, kMaxSegments> length_px{}, root_px{};
+  std::array<float, kMaxSegments> depth_m{};  // at the middle; 0: unknown, and so all that follows
+  std::array<float, kMaxSegments> ax{}, ay{}, az{}, bx{}, by{}, bz{}, depth_sigma{};
+};
+
+struct RateFactors {
+  float gain;         // of a junction
+  float max_reach_m;  // beyond three sigma of both depths
+  float f;
+};
+
+// quality[o]: of base line b and every line o, as if they met; 0: too far apart to be related.
+WIREPOSE_VECTOR_KERNEL void RatePairs(const LineArrays& l, std::size_t count, std::size_t b, const RateFactors& factors,
+                                      float* quality) {
+  const float pax = l.ax[b], pay = l.ay[b], paz = l.az[b], pbx = l.bx[b], pby = l.by[b], pbz = l.bz[b];
+  const float base = factors.gain * l.root_px[b], length = l.length_px[b];
+  const float per_f = 1 / factors.f, per_depth = 1 / l.depth_m[b], sigma = l.depth_sigma[b];
+  for (std::size_t o = 0; o < count; ++o) {
+    const float aax = l.ax[o] - pax, aay = l.ay[o] - pay, aaz = l.az[o] - paz;
+    const float abx = l.bx[o] - pax, aby = l.by[o] - pay, abz = l.bz[o] - paz;
+    const float bax = l.ax[o] - pbx, bay = l.ay[o] - pby, baz = l.az[o] - pbz;
+    const float bbx = l.bx[o] - pbx, bby = l.by[o] - pby, bbz = l.bz[o] - pbz;
+    const float aa = aax * aax + aay * aay + aaz * aaz, ab = abx * abx + aby * aby + abz * abz;
+    const float ba = bax * bax + bay * bay + baz * baz, bb = bbx * bbx + bby * bby + bbz * bbz;
+    const float of_a = aa > ab ? aa : ab, of_b = ba > bb ? ba : bb;
+    const float farthest = of_a > of_b ? of_a : of_b;  // squared
+    const float limit = factors.max_reach_m + 3 * (sigma + l.depth_sigma[o]);
+    const bool metric = l.depth_m[o] > 0;
+    const float row = (length + l.length_px[o]) * per_f;  // without depth: both lines in a row
+    const float reach = metric ? farthest * per_depth * per_depth : row * row;
+    const float rated = base * l.root_px[o] / reach;
+    quality[o] = metric && farthest > limit * limit ? 0 : rated;
+  }
+}
+
 class PairMaker {
  public:
   PairMaker(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines)
-      : params_(params), lines_(lines), f_(static_cast<float>(camera.f)) {
+      : params_(params), lines_(lines), factors_{params.junction_gain, params.max_reach_m, static_cast<float>(camera.f)} {
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      length_px_[i] = lines[i].segment.Length();
-      root_px_[i] = std::sqrt(length_px_[i]);
-      image_direction_[i] = lines[i].segment.Direction();
-      if (!lines[i].has_depth) continue;
-      depth_[i] = 0.5F * (lines[i].a.z() + lines[i].b.z());
-      direction_[i] = lines[i].Direction();
-      direction_sigma_[i] = DirectionSigma(camera, lines[i]);
-      depth_sigma_[i] = DepthSigma(camera, lines[i]);
+      const Line3& line = lines[i];
+      arrays_.length_px[i] = line.segment.Length();
+      arrays_.root_px[i] = std::sqrt(arrays_.length_px[i]);
+      image_direction_[i] = line.segment.Direction();
+      if (!line.has_depth) continue;
+      arrays_.depth_m[i] = 0.5F * (line.a.z() + line.b.z());
+      arrays_.ax[i] = line.a.x(), arrays_.ay[i] = line.a.y(), arrays_.az[i] = line.a.z();
+      arrays_.bx[i] = line.b.x(), arrays_.by[i] = line.b.y(), arrays_.bz[i] = line.b.z();
+      arrays_.depth_sigma[i] = DepthSigma(camera, line);
+      direction_[i] = line.Direction();
+      direction_sigma_[i] = DirectionSigma(camera, line);
     }
   }
 
-  // The quality of two lines, as if they met. False when they are too far apart to be related.
-  bool Rate(std::size_t b, std::size_t o, ImageLinePair& pair) const {
+  // The quality of base line b with every other line, as if they met; 0: too far apart to be related. Good until the
+  // next call.
+  [[nodiscard]] std::span<const float> Rate(std::size_t b) {
+    RatePairs(arrays_, lines_.size(), b, factors_, quality_.data());
+    return {quality_.data(), lines_.size()};
+  }
+
+  // Two lines, which of their ends meet, and what is left of their quality if none do. False when they are not related:
+  // a line without depth must meet the other one.
+  bool Join(std::size_t b, std::size_t o, float quality, ImageLinePair& pair) const {
     pair = {};
     pair.base = static_cast<std::uint16_t>(b);
     pair.other = static_cast<std::uint16_t>(o);
     pair.metric = lines_[o].has_depth;
-    // Without depth: two lines in a row.
-    float reach = (length_px_[b] + length_px_[o]) / f_;
-    float reach_squared = reach * reach;
-    if (pair.metric) {
-      const float farthest_squared = FarthestEnds(lines_[b], lines_[o]);
-      const float limit = params_.max_reach_m + 3 * (depth_sigma_[b] + depth_sigma_[o]);
-      if (farthest_squared > limit * limit) return false;
-      reach_squared = farthest_squared / (depth_[b] * depth_[b]);
-    }
-    pair.quality = params_.junction_gain * root_px_[b] * root_px_[o] / reach_squared;
-    return true;
-  }
-
-  // Which ends of two rated lines meet. False when that leaves them unrelated.
-  bool Join(ImageLinePair& pair) const {
-    const std::size_t b = pair.base, o = pair.other;
+    pair.quality = quality;
     const float ends_squared = NearestEnds(lines_[b].segment, lines_[o].segment, pair.base_end, pair.other_end);
-    const float reach = std::min(params_.junction_px, 4 + 0.3F * std::min(length_px_[b], length_px_[o]));
+    const float shorter = std::min(arrays_.length_px[b], arrays_.length_px[o]);
+    const float reach = std::min(params_.junction_px, 4 + 0.3F * shorter);
     if (ends_squared < reach * reach && ImageSine(image_direction_[b], image_direction_[o]) > 0.2F) return true;
     pair.base_end = pair.other_end = LineEnd::kNone;
     pair.quality /= params_.junction_gain;
@@ -90,9 +125,10 @@ class PairMaker {
   }
 
   // The whole pair of two lines that are related.
-  void Make(std::size_t b, std::size_t o, ImageLinePair& pair) const {
-    const bool related = Rate(b, o, pair) && Join(pair);
+  void Make(const RankedImagePair& ranked, ImageLinePair& pair) const {
+    const bool related = Join(ranked.base, ranked.other, 0, pair);
     Check(related);  // they were when the pair was ranked
+    pair.quality = ranked.quality;
     if (pair.metric) Measure(pair);
   }
 
@@ -110,8 +146,9 @@ class PairMaker {
     pair.kind = pair.angle_rad < params_.parallel_rad + pair.angle_sigma_rad ? LineSetKind::kParallel
                                                                              : LineSetKind::kIntersecting;
     pair.distance_m = DistanceOfLines(lines_[b], lines_[o], u, v, sine);
-    pair.distance_sigma_m = std::sqrt(depth_sigma_[b] * depth_sigma_[b] + depth_sigma_[o] * depth_sigma_[o]);
-    pair.farthest_end_m = std::sqrt(FarthestEnds(lines_[b], lines_[o]));
+    const float base_sigma = arrays_.depth_sigma[b], other_sigma = arrays_.depth_sigma[o];
+    pair.distance_sigma_m = std::sqrt(base_sigma * base_sigma + other_sigma * other_sigma);
+    pair.farthest_end_m = FarthestEnds(lines_[b], lines_[o]);
     pair.log_angle_sigma = Log(pair.angle_sigma_rad + 0.02F);
     pair.log_distance_sigma = Log((pair.distance_sigma_m + 0.003F) / 0.01F);
   }
@@ -125,12 +162,12 @@ class PairMaker {
 
   const LineSetParams& params_;
   const Lines3& lines_;
-  float f_;
-  std::array<float, kMaxSegments> length_px_{}, root_px_{};
+  RateFactors factors_;
+  LineArrays arrays_;
   std::array<Vector2, kMaxSegments> image_direction_;
-  // Of lines with depth.
-  std::array<float, kMaxSegments> depth_{}, direction_sigma_{}, depth_sigma_{};
-  std::array<Vector3, kMaxSegments> direction_;
+  std::array<Vector3, kMaxSegments> direction_;  // of lines with depth
+  std::array<float, kMaxSegments> direction_sigma_{};
+  std::array<float, kMaxSegments> quality_;
 };
 
 // Counting sort of the kept pairs by base line. Within a base they stay in the order of quality. What was kept is
@@ -144,7 +181,7 @@ void GroupByBase(const PairMaker& maker, std::size_t line_count, ImageLineSets& 
   out.pairs.resize(kept.size());
   std::array<std::uint16_t, kMaxSegments> next;
   std::copy(out.first.begin(), out.first.end() - 1, next.begin());
-  for (const RankedImagePair& pair : kept) maker.Make(pair.base, pair.other, out.pairs[next[pair.base]++]);
+  for (const RankedImagePair& pair : kept) maker.Make(pair, out.pairs[next[pair.base]++]);
 }
 
 }  // namespace
@@ -167,17 +204,17 @@ float DirectionSigma(const RectifiedCamera& camera, const Line3& line) {
 
 void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines, ImageLineSets& out) {
   out.kept.clear();
-  const PairMaker maker(params, camera, lines);
+  PairMaker maker(params, camera, lines);
   for (std::size_t b = 0; b < lines.size(); ++b) {
     if (!lines[b].has_depth || lines[b].segment.Length() < params.min_depth_length_px) continue;
+    const std::span<const float> quality = maker.Rate(b);
     for (std::size_t o = 0; o < lines.size(); ++o) {
+      // Most pairs are unrelated or too weak to be kept, even if they met.
+      if (quality[o] <= 0 || !out.kept.WouldKeep({quality[o], 0, 0})) continue;
       // Of two lines with depth the longer one, which comes first, is the base: model sets hold both orders.
       if (o == b || (o < b && lines[o].has_depth)) continue;
       ImageLinePair pair;
-      if (!maker.Rate(b, o, pair)) continue;
-      // Most pairs are too weak to be kept, even if they met.
-      if (!out.kept.WouldKeep({pair.quality, 0, 0}) || !maker.Join(pair)) continue;
-      out.kept.Push({pair.quality, pair.base, pair.other});
+      if (maker.Join(b, o, quality[o], pair)) out.kept.Push({pair.quality, pair.base, pair.other});
     }
   }
   out.dropped = out.kept.dropped();

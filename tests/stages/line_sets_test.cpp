@@ -144,6 +144,40 @@ TEST(Junctions, LineWithoutDepthNeedsOne) {
   }
 }
 
+double QualityOf(const Line3& p, const Line3& q) {
+  const double lengths = static_cast<double>(p.segment.Length()) * static_cast<double>(q.segment.Length());
+  const double depth = 0.5 * static_cast<double>(p.a.z() + p.b.z());
+  return std::sqrt(lengths) * std::pow(depth / FarthestOf(p, q), 2);
+}
+
+// Long lines near each other rank first, all the more when they meet.
+TEST(Quality, IsLengthOverReach) {
+  Random random(6);
+  const RectifiedCamera camera = testing::TestCamera();
+  const auto s = std::make_unique<Sets>();
+  int met = 0;
+  for (int k = 0; k < Cases(3000); ++k) {
+    s->lines.clear();
+    const Line3 base = AnyLine(random, camera);
+    Line3 other = AnyLine(random, camera);
+    if (k % 2 == 0) {
+      const Vector3d far = base.b.cast<double>() + 0.2 * testing::AnyDirection(random);
+      if (far.z() < 0.3) continue;
+      other = MakeLine(camera, base.b.cast<double>(), far);
+    }
+    Add(s->lines, base);
+    Add(s->lines, other);
+    FindLineSets({}, camera, s->lines, s->sets);
+    if (s->sets.pairs.empty()) continue;
+    const ImageLinePair& pair = s->sets.pairs[0];
+    const bool meet = pair.base_end != LineEnd::kNone;
+    const double expected = QualityOf(base, other) * (meet ? static_cast<double>(LineSetParams{}.junction_gain) : 1.0);
+    EXPECT_NEAR(static_cast<double>(pair.quality) / expected, 1, 1e-4);
+    met += meet ? 1 : 0;
+  }
+  EXPECT_GT(met, Cases(3000) / 4);
+}
+
 TEST(Grouping, EveryPairIsFoundUnderItsBase) {
   Random random(3);
   const RectifiedCamera camera = testing::TestCamera();
