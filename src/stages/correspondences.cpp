@@ -57,10 +57,12 @@ class Matcher {
     float known = 0, most = 0;
   };
 
-  // At a corner of the model and elsewhere.
+  // What is the same for every base edge: the rank at a corner of the model and elsewhere, and which distances a member
+  // may have.
   struct PairRanks {
     PairRank corner, apart;
     std::uint16_t pair = 0;
+    float slack_m = 0, low_m = 0, high_m = 0;
     [[nodiscard]] float Most() const { return std::max(corner.most, apart.most); }
   };
 
@@ -73,8 +75,13 @@ class Matcher {
 
   [[nodiscard]] PairRanks RanksOf(const ImageLinePair& pair) const {
     const PairRank apart = RankAs(ClassOf(pair, false), pair);
-    return {Meets(pair) ? RankAs(ClassOf(pair, true), pair) : apart, apart,
-            static_cast<std::uint16_t>(&pair - sets_.pairs.data())};
+    const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
+    return {Meets(pair) ? RankAs(ClassOf(pair, true), pair) : apart,
+            apart,
+            static_cast<std::uint16_t>(&pair - sets_.pairs.data()),
+            slack,
+            (pair.distance_m - slack) / (1 + params_.length_tolerance),
+            (pair.distance_m + slack) / (1 - params_.length_tolerance)};
   }
 
   void RankPairs(std::span<const ImageLinePair> pairs) {
@@ -100,7 +107,7 @@ class Matcher {
       const Rank apart = RankOf(ClassOf(pair, false), ranks.apart);
       if (std::max(corner.room, apart.room) < 0) continue;
       for (const PreparedSet& set : sets) {
-        if (pair.kind == set.kind) MatchPair(set, pair, corner, apart);
+        if (pair.kind == set.kind) MatchPair(set, pair, ranks, corner, apart);
       }
     }
   }
@@ -127,48 +134,38 @@ class Matcher {
     return {c, pair.known + base, out_.worst() ? pair.most + base - out_.worst()->rank : kUnlimited};
   }
 
-  void MatchPair(const PreparedSet& set, const ImageLinePair& pair, const Rank& corner, const Rank& apart) {
+  void MatchPair(const PreparedSet& set, const ImageLinePair& pair, const PairRanks& ranks, const Rank& corner,
+                 const Rank& apart) {
     if (!pair.metric) {
       for (std::size_t i = set.first; i < set.corner_end; ++i) Emit(set, model_.members[i], pair, corner);
       return;
     }
     // Most pairs of a scene are too far apart for any member.
-    const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
-    if (pair.farthest_end_m > set.max_farthest_end_m * (1 + params_.length_tolerance) + slack) return;
+    if (pair.farthest_end_m > set.max_farthest_end_m * (1 + params_.length_tolerance) + ranks.slack_m) return;
+    if (ranks.low_m > set.max_distance_m) return;
     // Members whose distance agrees: a few of the rest by binary search, and those at a corner when the lines may meet.
-    if (corner.room >= 0) MatchRange(set, set.first, set.corner_end, pair, corner);
-    if (apart.room >= 0) MatchRange(set, set.corner_end, set.end, pair, apart);
+    if (corner.room >= 0) MatchRange(set, set.first, set.corner_end, ranks, corner);
+    if (apart.room >= 0) MatchRange(set, set.corner_end, set.end, ranks, apart);
   }
 
-  struct Limits {
-    float low_m, high_m;  // of the distance
-    float max_angle_rad;  // between the pair's and the member's angle
-  };
-
-  // What is further off is out of tolerance or cannot be kept.
-  [[nodiscard]] Limits LimitsOf(const ImageLinePair& pair, const Rank& rank) const {
-    const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
-    const float high = (pair.distance_m + slack) / (1 - params_.length_tolerance);
-    const float low = (pair.distance_m - slack) / (1 + params_.length_tolerance);
-    const float reach = std::sqrt(rank.room / ranker_.LossOfDistance(rank.pair_class)) * DistanceSigma(pair, high);
-    const float angle = std::sqrt(rank.room / ranker_.LossOfAngle(rank.pair_class)) * AngleSigma(pair);
-    return {std::max(low, pair.distance_m - reach), std::min(high, pair.distance_m + reach),
-            std::min(params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad, angle)};
-  }
-
-  void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, const ImageLinePair& pair,
+  void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, const PairRanks& ranks,
                   const Rank& rank) {
-    const PreparedMember* members = model_.members.data();
-    if (begin == end) return;
-    const Limits limits = LimitsOf(pair, rank);
-    if (members[end - 1].distance_m < limits.low_m) return;
-    const PreparedMember* from =
-        std::lower_bound(members + begin, members + end, limits.low_m,
-                         [](const PreparedMember& m, float value) { return m.distance_m < value; });
-    for (const PreparedMember* m = from; m != members + end && m->distance_m <= limits.high_m && budget_.Spend(1);
-         ++m) {
-      if (std::abs(pair.angle_rad - m->angle_rad) <= limits.max_angle_rad && SizeAgrees(pair, *m))
-        Emit(set, *m, pair, rank);
+    const PreparedMember *last = model_.members.data() + end,
+                         *from = std::lower_bound(
+                             model_.members.data() + begin, last, ranks.low_m,
+                             [](const PreparedMember& m, float value) { return m.distance_m < value; });
+    if (from == last || from->distance_m > ranks.high_m) return;
+    const ImageLinePair& pair = sets_.pairs[ranks.pair];
+    const float max_angle = params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad;
+    // By how much angle and distance may differ before the match cannot be kept, squared.
+    const float angle_sigma = AngleSigma(pair), distance_sigma = DistanceSigma(pair, ranks.high_m);
+    const float angle_room = rank.room * angle_sigma * angle_sigma / ranker_.LossOfAngle(rank.pair_class);
+    const float distance_room =
+        rank.room * distance_sigma * distance_sigma / ranker_.LossOfDistance(rank.pair_class);
+    for (const PreparedMember* m = from; m != last && m->distance_m <= ranks.high_m && budget_.Spend(1); ++m) {
+      const float angle = std::abs(pair.angle_rad - m->angle_rad), distance = pair.distance_m - m->distance_m;
+      if (angle > max_angle || angle * angle > angle_room || distance * distance > distance_room) continue;
+      if (SizeAgrees(pair, *m, ranks.slack_m)) Emit(set, *m, pair, rank);
     }
   }
 
@@ -176,8 +173,7 @@ class Matcher {
     return model_.edges[member.other_edge].length_m;
   }
 
-  [[nodiscard]] bool SizeAgrees(const ImageLinePair& pair, const PreparedMember& member) const {
-    const float slack = params_.end_tolerance_m + params_.sigmas * pair.distance_sigma_m;
+  [[nodiscard]] bool SizeAgrees(const ImageLinePair& pair, const PreparedMember& member, float slack) const {
     if (pair.farthest_end_m > member.farthest_end_m * (1 + params_.length_tolerance) + slack) return false;
     return Fits(length_[pair.other], slack_[pair.other], OtherLength(member), params_.min_other_cover);
   }
