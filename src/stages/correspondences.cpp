@@ -151,17 +151,16 @@ class Matcher {
   void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, const PairRanks& ranks,
                   const Rank& rank) {
     const PreparedMember *last = model_.members.data() + end,
-                         *from = std::lower_bound(
-                             model_.members.data() + begin, last, ranks.low_m,
-                             [](const PreparedMember& m, float value) { return m.distance_m < value; });
+                         *from =
+                             std::lower_bound(model_.members.data() + begin, last, ranks.low_m,
+                                              [](const PreparedMember&m, float value) { return m.distance_m < value; });
     if (from == last || from->distance_m > ranks.high_m) return;
     const ImageLinePair& pair = sets_.pairs[ranks.pair];
     const float max_angle = params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad;
     // By how much angle and distance may differ before the match cannot be kept, squared.
     const float angle_sigma = AngleSigma(pair), distance_sigma = DistanceSigma(pair, ranks.high_m);
     const float angle_room = rank.room * angle_sigma * angle_sigma / ranker_.LossOfAngle(rank.pair_class);
-    const float distance_room =
-        rank.room * distance_sigma * distance_sigma / ranker_.LossOfDistance(rank.pair_class);
+    const float distance_room = rank.room * distance_sigma * distance_sigma / ranker_.LossOfDistance(rank.pair_class);
     for (const PreparedMember* m = from; m != last && m->distance_m <= ranks.high_m && budget_.Spend(1); ++m) {
       const float angle = std::abs(pair.angle_rad - m->angle_rad), distance = pair.distance_m - m->distance_m;
       if (angle > max_angle || angle * angle > angle_room || distance * distance > distance_room) continue;

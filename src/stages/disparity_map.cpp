@@ -61,12 +61,12 @@ struct Steps {
   std::uint16_t small, large;
 };
 
-// One step of a path: L(d) = C(d) + min(L'(d), L'(d +- 1) + small, min L' + large) - min L'. Adds L to `sum`, or puts it
-// there (kFirst), writes it to `out` (guards stay) and returns its minimum. `previous` and `out` point at disparity 0
-// behind the guard.
+// One step of a path: L(d) = C(d) + min(L'(d), L'(d +- 1) + small, min L' + large) - min L'. Adds L to `sum`, or puts
+// it there (kFirst), writes it to `out` (guards stay) and returns its minimum. `previous` and `out` point at disparity
+// 0 behind the guard.
 template <bool kFirst>
 WIREPOSE_INLINE std::uint16_t Advance(const std::uint16_t* cost, const std::uint16_t* previous, std::uint16_t lowest,
-                             Steps steps, std::uint16_t* out, std::uint16_t* sum) {
+                                      Steps steps, std::uint16_t* out, std::uint16_t* sum) {
   const auto limit = static_cast<std::uint16_t>(lowest + steps.large);
   std::uint16_t least = 0xFFFF;
   for (int d = 0; d < kDepth; ++d) {
@@ -106,8 +106,8 @@ WIREPOSE_INLINE void AdvanceAll(Steps steps, int width, int x, std::size_t parit
                                   p.from_left[(x + 1) % 2].data() + 1, sum);
   above_lowest = Advance<false>(cost, scratch.above[1 - parity][column].data() + 1, above_lowest, steps,
                                 scratch.above[parity][column].data() + 1, sum);
-  p.right_lowest = Advance<kFirst>(scratch.cost.data() + mirrored, p.from_right[x % 2].data() + 1, p.right_lowest, steps,
-                                   p.from_right[(x + 1) % 2].data() + 1, scratch.sum.data() + mirrored);
+  p.right_lowest = Advance<kFirst>(scratch.cost.data() + mirrored, p.from_right[x % 2].data() + 1, p.right_lowest,
+                                   steps, p.from_right[(x + 1) % 2].data() + 1, scratch.sum.data() + mirrored);
 }
 
 // Sums the three paths of a row into scratch.sum; rows alternate in `parity`.

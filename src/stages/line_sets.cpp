@@ -84,7 +84,9 @@ WIREPOSE_VECTOR_KERNEL void RatePairs(const LineArrays& l, std::size_t count, st
 class PairMaker {
  public:
   PairMaker(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines)
-      : params_(params), lines_(lines), factors_{params.junction_gain, params.max_reach_m, static_cast<float>(camera.f)} {
+      : params_(params),
+        lines_(lines),
+        factors_{params.junction_gain, params.max_reach_m, static_cast<float>(camera.f)} {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const Line3& line = lines[i];
       arrays_.length_px[i] = line.segment.Length();
