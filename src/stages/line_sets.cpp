@@ -46,7 +46,7 @@ float ImageSine(const Vector2& u, const Vector2& v) { return std::abs(u.x() * v.
 
 // What the quality of pairs needs of all lines, number by number.
 struct LineArrays {
-  std::array<float, kMaxSegments> length_px{}, root_px{};
+  std::array<float, kMaxSegments> length_px{};
   std::array<float, kMaxSegments> depth_m{};  // at the middle; 0: unknown, and so all that follows
   std::array<float, kMaxSegments> ax{}, ay{}, az{}, bx{}, by{}, bz{}, depth_sigma{};
 };
@@ -61,8 +61,8 @@ struct RateFactors {
 WIREPOSE_VECTOR_KERNEL void RatePairs(const LineArrays& l, std::size_t count, std::size_t b, const RateFactors& factors,
                                       float* quality) {
   const float pax = l.ax[b], pay = l.ay[b], paz = l.az[b], pbx = l.bx[b], pby = l.by[b], pbz = l.bz[b];
-  const float base = factors.gain * l.root_px[b], length = l.length_px[b];
-  const float per_f = 1 / factors.f, per_depth = 1 / l.depth_m[b], sigma = l.depth_sigma[b];
+  const float length = l.length_px[b], sigma = l.depth_sigma[b];
+  const float base = factors.gain * length, px_per_m = factors.f / l.depth_m[b];
   for (std::size_t o = 0; o < count; ++o) {
     const float aax = l.ax[o] - pax, aay = l.ay[o] - pay, aaz = l.az[o] - paz;
     const float abx = l.bx[o] - pax, aby = l.by[o] - pay, abz = l.bz[o] - paz;
@@ -74,9 +74,9 @@ WIREPOSE_VECTOR_KERNEL void RatePairs(const LineArrays& l, std::size_t count, st
     const float farthest = of_a > of_b ? of_a : of_b;  // squared
     const float limit = factors.max_reach_m + 3 * (sigma + l.depth_sigma[o]);
     const bool metric = l.depth_m[o] > 0;
-    const float row = (length + l.length_px[o]) * per_f;  // without depth: both lines in a row
-    const float reach = metric ? farthest * per_depth * per_depth : row * row;
-    const float rated = base * l.root_px[o] / reach;
+    const float row = length + l.length_px[o];  // without depth: both lines in a row
+    const float reach_px2 = metric ? farthest * px_per_m * px_per_m : row * row;
+    const float rated = base * l.length_px[o] / reach_px2;
     quality[o] = metric && farthest > limit * limit ? 0 : rated;
   }
 }
@@ -90,7 +90,6 @@ class PairMaker {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const Line3& line = lines[i];
       arrays_.length_px[i] = line.segment.Length();
-      arrays_.root_px[i] = std::sqrt(arrays_.length_px[i]);
       image_direction_[i] = line.segment.Direction();
       if (!line.has_depth) continue;
       arrays_.depth_m[i] = 0.5F * (line.a.z() + line.b.z());

@@ -69,9 +69,9 @@ static_assert(kMaxImageLinePairs <= 0xFFFF);
 
 // Every line with depth becomes a base line; its members are the lines with depth within reach, parallel or not, and
 // the lines without depth that meet it at a junction. Of too many pairs those are kept that are most likely two edges
-// of one object: by the root of the product of both lengths in the image, over the square of the angle at which the
-// farthest ends of both are seen, and more when they meet. `dropped` counts those that were made and given up, not
-// those that could not have ranked at all. O(lines^2 log pairs).
+// of one object, large or small, near or far: by the product of both lengths over the square of the distance of their
+// farthest ends, all in pixels, and more when they meet. `dropped` counts those that were made and given up, not those
+// that could not have ranked at all. O(lines^2 log pairs).
 void FindLineSets(const LineSetParams& params, const RectifiedCamera& camera, const Lines3& lines, ImageLineSets& out);
 
 // Standard deviation of a line's direction, from the disparity covariance; pi/2 at most.

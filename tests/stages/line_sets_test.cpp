@@ -144,14 +144,14 @@ TEST(Junctions, LineWithoutDepthNeedsOne) {
   }
 }
 
-double QualityOf(const Line3& p, const Line3& q) {
+double QualityOf(const RectifiedCamera& camera, const Line3& p, const Line3& q) {
   const double lengths = static_cast<double>(p.segment.Length()) * static_cast<double>(q.segment.Length());
   const double depth = 0.5 * static_cast<double>(p.a.z() + p.b.z());
-  return std::sqrt(lengths) * std::pow(depth / FarthestOf(p, q), 2);
+  return lengths * std::pow(depth / (camera.f * FarthestOf(p, q)), 2);
 }
 
 // Long lines near each other rank first, all the more when they meet.
-TEST(Quality, IsLengthOverReach) {
+TEST(Quality, IsLengthsOverReach) {
   Random random(6);
   const RectifiedCamera camera = testing::TestCamera();
   const auto s = std::make_unique<Sets>();
@@ -171,7 +171,8 @@ TEST(Quality, IsLengthOverReach) {
     if (s->sets.pairs.empty()) continue;
     const ImageLinePair& pair = s->sets.pairs[0];
     const bool meet = pair.base_end != LineEnd::kNone;
-    const double expected = QualityOf(base, other) * (meet ? static_cast<double>(LineSetParams{}.junction_gain) : 1.0);
+    const double expected =
+        QualityOf(camera, base, other) * (meet ? static_cast<double>(LineSetParams{}.junction_gain) : 1.0);
     EXPECT_NEAR(static_cast<double>(pair.quality) / expected, 1, 1e-4);
     met += meet ? 1 : 0;
   }
