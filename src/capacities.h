@@ -26,8 +26,8 @@ inline constexpr std::size_t kMaxChain = 2048;
 // Corners whose rows are compared between the eyes: one in each of 8 x 4 cells. Five numbers are estimated from them.
 inline constexpr std::size_t kMaxRowOffsets = 32;
 
-// Related pairs of image lines: 150 lines with depth make 11,000. Of 228 objects of fitting scenes all have a right
-// pair among this many, and 45 on average.
+// Related pairs of image lines: 150 lines with depth make 11,000. Of 228 objects of fitting scenes 227 have a right
+// pair among this many, and 39 on average.
 inline constexpr std::size_t kMaxImageLinePairs = 2048;
 // Corresponding line sets kept per model, by rank: the paper's "small number". 1,536 find as many objects.
 inline constexpr std::size_t kMaxCorrespondences = 1024;

@@ -107,7 +107,7 @@ class Matcher {
       const Rank apart = RankOf(ClassOf(pair, false), ranks.apart);
       if (std::max(corner.room, apart.room) < 0) continue;
       for (const PreparedSet& set : sets) {
-        if (pair.kind == set.kind) MatchPair(set, pair, ranks, corner, apart);
+        if (pair.kind == set.kind) MatchPair(set, ranks, corner, apart);
       }
     }
   }
@@ -134,8 +134,8 @@ class Matcher {
     return {c, pair.known + base, out_.worst() ? pair.most + base - out_.worst()->rank : kUnlimited};
   }
 
-  void MatchPair(const PreparedSet& set, const ImageLinePair& pair, const PairRanks& ranks, const Rank& corner,
-                 const Rank& apart) {
+  void MatchPair(const PreparedSet& set, const PairRanks& ranks, const Rank& corner, const Rank& apart) {
+    const ImageLinePair& pair = sets_.pairs[ranks.pair];
     if (!pair.metric) {
       for (std::size_t i = set.first; i < set.corner_end; ++i) Emit(set, model_.members[i], pair, corner);
       return;
@@ -150,10 +150,10 @@ class Matcher {
 
   void MatchRange(const PreparedSet& set, std::size_t begin, std::size_t end, const PairRanks& ranks,
                   const Rank& rank) {
-    const PreparedMember *last = model_.members.data() + end,
-                         *from =
-                             std::lower_bound(model_.members.data() + begin, last, ranks.low_m,
-                                              [](const PreparedMember&m, float value) { return m.distance_m < value; });
+    const PreparedMember* last = model_.members.data() + end;
+    const PreparedMember* from =
+        std::lower_bound(model_.members.data() + begin, last, ranks.low_m,
+                         [](const PreparedMember& m, float value) { return m.distance_m < value; });
     if (from == last || from->distance_m > ranks.high_m) return;
     const ImageLinePair& pair = sets_.pairs[ranks.pair];
     const float max_angle = params_.angle_tolerance_rad + params_.sigmas * pair.angle_sigma_rad;

@@ -27,7 +27,7 @@ PoseScorer::LogGain PoseScorer::Gain(const EdgeMap& map) const {
 
 namespace {
 
-// R p + t, written out: Eigen's product is a call here, and there are half a million a frame.
+// R p + t, written out: Eigen's product is a call here, and there are a hundred thousand a frame.
 inline Vector3 Moved(const Matrix3& R, const Vector3& t, const Vector3& p) {
   return {R(0, 0) * p.x() + R(0, 1) * p.y() + R(0, 2) * p.z() + t.x(),
           R(1, 0) * p.x() + R(1, 1) * p.y() + R(1, 2) * p.z() + t.y(),
