@@ -304,14 +304,8 @@ void Recognizer::MatchModel(std::size_t m, StageTimer& timer, RecognitionResult&
   RefinePriors(m);
   timer.Done(Stage::kRefine);
 
-  for (Candidate& candidate : refined_) Judge(candidate);
-  timer.Done(Stage::kVerify);
   for (Candidate& candidate : refined_) {
-    if (IsWorthPolishing(candidate)) Polish(candidate);
-  }
-  timer.Done(Stage::kRefine);
-  for (Candidate& candidate : refined_) {
-    if (IsWorthPolishing(candidate)) Judge(candidate);
+    Judge(candidate);
     candidates_.Push(candidate);
   }
   timer.Done(Stage::kVerify);
@@ -322,9 +316,18 @@ SceneImages Recognizer::ImagesFor(const RefineParams& params) const {
   return {camera(), left_smooth_, right_smooth_, surface ? &disparity_ : nullptr};
 }
 
+// Right poses and others differ more when they lie where their edges are: what the second pass cannot improve stays.
+void Recognizer::Adjust(const PreparedModel& model, const Pose& start, RefinedPose& out) {
+  RefinePose(params_.refine, ImagesFor(params_.refine), model, start, refine_scratch_, out);
+  if (!out.ok) return;
+  RefinedPose polished;
+  RefinePose(params_.polish, ImagesFor(params_.polish), model, out.T_camera_model, refine_scratch_, polished);
+  if (polished.ok) out = polished;
+}
+
 void Recognizer::RefineFrom(std::size_t m, const Pose& start, Candidate& candidate) {
   candidate.model = static_cast<std::uint16_t>(m);
-  RefinePose(params_.refine, ImagesFor(params_.refine), models_[m], start, refine_scratch_, candidate.pose);
+  Adjust(models_[m], start, candidate.pose);
   if (candidate.pose.ok) refined_.push_back(candidate);
 }
 
@@ -352,15 +355,6 @@ void Recognizer::Judge(Candidate& candidate) {
                           right_smooth_, disparity_,  left_segments()};
   GatherEvidence(params_.verify, input, models_[candidate.model], candidate.pose, verify_scratch_, candidate.evidence);
   candidate.score = ScoreOf(DefaultScoreTable(), TermsOf(candidate.evidence));
-}
-
-// The last of the adjustment, with more samples and iterations: right poses and others differ more when they lie where
-// their edges are. What it cannot improve stays.
-void Recognizer::Polish(Candidate& candidate) {
-  RefinedPose polished;
-  RefinePose(params_.polish, ImagesFor(params_.polish), models_[candidate.model], candidate.pose.T_camera_model,
-             refine_scratch_, polished);
-  if (polished.ok) candidate.pose = polished;
 }
 
 }  // namespace wirepose

@@ -86,9 +86,8 @@ struct RecognizerParams {
   CorrespondenceParams correspondences;
   HypothesisParams hypotheses;
   PromotionParams promotion;
-  RefineParams refine{.iterations = 4, .samples = {.step_px = 14}};  // of candidates: near enough to be judged
-  float min_polish_score = 0.02F;                  // what has more is adjusted to the end, judged anew
-  RefineParams polish{.samples = {.step_px = 6}};  // with all that the images tell of the pose
+  RefineParams refine{.iterations = 4, .samples = {.step_px = 14}};  // from afar
+  RefineParams polish{.samples = {.step_px = 6}};                    // then with all that the images tell of the pose
   VerifyParams verify;
   SelectParams select;
   AmbiguityParams ambiguity;
@@ -210,14 +209,12 @@ class Recognizer {
   void FindEdges(const ImagePlane& image, const RectificationMap& map, SmoothPlane& smooth, EdgeMap& edge_map,
                  Segments* segments, ListUse& pixels);
   [[nodiscard]] SceneEdges Edges() const { return {camera(), left_edges_, right_edges_}; }
-  // Refines from `start` and appends to refined_ what fits.
+  // Adjusts to the end, from few samples first; not ok when nothing fits.
+  void Adjust(const PreparedModel& model, const Pose& start, RefinedPose& out);
+  // Adjusts from `start` and appends to refined_ what fits.
   void RefineFrom(std::size_t m, const Pose& start, Candidate& candidate);
   void RefinePriors(std::size_t m);
   void Judge(Candidate& candidate);
-  [[nodiscard]] bool IsWorthPolishing(const Candidate& candidate) const {
-    return candidate.score >= params_.min_polish_score;
-  }
-  void Polish(Candidate& candidate);
 
   // recognizer_report.cpp
   struct Rival {  // a pose that may be a mode

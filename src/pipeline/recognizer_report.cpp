@@ -92,13 +92,9 @@ void Recognizer::FindTurnedRivals(const Candidate& candidate, float min_odds, Ri
     if (known || !(start.t.z() > 0) || support(start) < std::max(needed, 0.01F)) continue;
     Candidate turned;
     turned.model = candidate.model;
-    RefinePose(params_.refine, ImagesFor(params_.refine), model, start, refine_scratch_, turned.pose);
+    Adjust(model, start, turned.pose);
     if (!turned.pose.ok) continue;
     Judge(turned);
-    if (IsWorthPolishing(turned)) {
-      Polish(turned);
-      Judge(turned);
-    }
     if (IsRival(turned, rivals, min_odds)) rivals.push_back({turned.pose.T_camera_model, OddsOf(turned.score)});
   }
 }

@@ -48,7 +48,17 @@ EvidenceTerms TermsOf(const Evidence& evidence) {
           evidence.ground.stands,
           evidence.ground.hangs,
           evidence.ground.sunk,
-          evidence.ground.gap};
+          evidence.ground.gap,
+          evidence.rivals.inward,
+          evidence.rivals.outward,
+          evidence.rivals.rival,
+          evidence.rivals.own,
+          evidence.rivals.left,
+          evidence.rivals.end_peak,
+          evidence.rivals.moved,
+          evidence.rivals.moved_peak,
+          evidence.rivals.turned,
+          evidence.rivals.turned_peak};
 }
 
 const std::array<const char*, kEvidenceTerms>& EvidenceTermNames() {
@@ -94,7 +104,17 @@ const std::array<const char*, kEvidenceTerms>& EvidenceTermNames() {
                                                                      "stands",
                                                                      "hangs",
                                                                      "sunk",
-                                                                     "gap"};
+                                                                     "gap",
+                                                                     "rival_inward",
+                                                                     "rival_outward",
+                                                                     "rival_support",
+                                                                     "end_support",
+                                                                     "rival_left",
+                                                                     "end_peak",
+                                                                     "moved",
+                                                                     "moved_peak",
+                                                                     "turned",
+                                                                     "turned_peak"};
   return kNames;
 }
 

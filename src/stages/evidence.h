@@ -10,6 +10,7 @@
 #include "stages/ground_evidence.h"
 #include "stages/line_evidence.h"
 #include "stages/occlusion.h"
+#include "stages/rival_evidence.h"
 #include "stages/sample_edges.h"
 #include "stages/surface_evidence.h"
 
@@ -21,6 +22,7 @@ struct VerifyParams {
   SurfaceEvidenceParams surface;
   LineEvidenceParams lines;
   GroundEvidenceParams ground;
+  RivalEvidenceParams rivals;
   int piece_samples = 5;           // neighbouring samples of an edge whose profiles are averaged
   float noise_floor = 0.6F;        // grey levels per pixel that an averaged profile may show of nothing
   float max_offset_px = 2.2F;      // of a supporting image edge from the model edge, in each image ...
@@ -66,9 +68,10 @@ struct Evidence {
   float rms_px = 0;         // what the refinement left
   float uncertainty = 0;    // of the position by what the visible edges determine, over the diameter
   GroundEvidence ground;    // of the disparity map, around what the object may stand on
+  RivalEvidence rivals;     // of image edges at other sizes and poses
 };
 
-inline constexpr std::size_t kEvidenceTerms = 43;
+inline constexpr std::size_t kEvidenceTerms = 53;
 using EvidenceTerms = std::array<float, kEvidenceTerms>;
 
 // The terms in a fixed order, as the score reads them, and their names in that order.

@@ -27,6 +27,8 @@ void GatherEvidence(const VerifyParams& params, const VerifyInput& in, const Pre
   GatherLineEvidence(params.lines, in.camera, in.segments, model, T, scratch.samples, scratch.surface, out.lines);
   GatherSurfaceEvidence(params.surface, in.disparity, scratch.surface, out.surface);
   GatherGroundEvidence(params.ground, in.camera, in.disparity, model, T, scratch.surface, out.ground);
+  GatherRivalEvidence(params.rivals, in.camera, in.left_edges, in.right_edges, model, T, scratch.samples,
+                      scratch.rivals, out.rivals);
   out.disparity_px = MeanDisparity(scratch.samples);
   out.rms_px = pose.rms_px;
   out.uncertainty = pose.position_sigma_m / model.view.diameter_m;

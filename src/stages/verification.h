@@ -11,6 +11,7 @@ struct VerifyScratch {
   EdgeSamples samples;
   FrontTriangles front;
   SurfaceMap surface;
+  RivalScratch rivals;
 };
 
 // Lines place an object but do not decide its presence: random poses reach high support in clutter. An edge supports

@@ -361,28 +361,25 @@ TEST_F(RecognizerTest, StatisticsDescribeTheFrame) {
   }
 }
 
-// The evidence of a candidate is that of the pose it ends at, and what may be right ends with all the samples it can
-// have.
-TEST_F(RecognizerTest, WhatMayBeRightIsAdjustedToTheEndAndJudgedThere) {
+// The evidence of a candidate is that of the pose it ends at, and it ends with all the samples it can have.
+TEST_F(RecognizerTest, CandidatesAreAdjustedToTheEndAndJudgedThere) {
   AddModels();
-  constexpr float kNever = 2, kSure = 0.6F;
-  std::array<int, 2> samples{}, sure{};
+  std::array<std::size_t, 2> samples{}, candidates{};
   for (const std::size_t run : {0, 1}) {
     RecognizerParams params;
-    if (run == 0) params.min_polish_score = kNever;
+    if (run == 0) params.polish = params.refine;
     ASSERT_EQ(TheRecognizer().Configure(testing::GoldenCalibration(), params), RecognizerError::kOk);
     for (int frame = 0; frame < testing::kGoldenFrames; ++frame) {
       ASSERT_EQ(Process(testing::GoldenFrame(frame), result_), RecognizerError::kOk);
       for (const Candidate& candidate : TheRecognizer().candidates()) {
         EXPECT_EQ(candidate.evidence.rms_px, candidate.pose.rms_px);
-        if (candidate.score < kSure) continue;
-        ++sure[run];
+        ++candidates[run];
         samples[run] += candidate.pose.inliers;
       }
     }
-    ASSERT_GT(sure[run], 0);
+    ASSERT_GT(candidates[run], 0U);
   }
-  EXPECT_GT(samples[1] / sure[1], 3 * samples[0] / sure[0] / 2);
+  EXPECT_GT(samples[1] / candidates[1], 3 * samples[0] / candidates[0] / 2);
 }
 
 TEST_F(RecognizerTest, StagesAreObservedInOrder) {

@@ -23,10 +23,11 @@ from sklearn.ensemble import HistGradientBoostingClassifier
 DEPTH = 5
 RISING = {'visible_px', 'inside', 'support', 'sharp', 'sharp_of_support', 'full_edges', 'weakest_edge', 'distinct',
           'clear', 'dimmest_edge', 'outline', 'outline_distinct', 'inner_distinct', 'ends', 'corners',
-          'weakest_face', 'on', 'drop', 'stands'}
+          'weakest_face', 'on', 'drop', 'stands', 'end_peak',
+          'moved_peak', 'turned_peak'}
 FALLING = {'chance', 'spread_px', 'parallax_px', 'weak_edges', 'overrun', 'crossed', 'crossing', 'crossings',
            'inner_crossings', 'beyond', 'across', 'hidden', 'through', 'level', 'misfit', 'rms_px', 'uncertainty', 'hangs',
-           'gap'}
+           'gap', 'rival_inward', 'rival_outward', 'rival_left', 'moved', 'turned'}
 STAGES = pathlib.Path(__file__).resolve().parents[2] / 'src/stages'
 
 
@@ -42,7 +43,7 @@ class Kind:
     function: str
 
 
-KINDS = {'score': Kind('visible_px', 'gap', 0.1, 300, 0.06, 'score.h', 'score_table.cpp', 'DefaultScoreTable'),
+KINDS = {'score': Kind('visible_px', 'turned_peak', 0.1, 300, 0.06, 'score.h', 'score_table.cpp', 'DefaultScoreTable'),
          'rank': Kind('score', 'hypotheses', 0.15, 60, 0.12, 'set_rank.h', 'rank_table.cpp', 'DefaultRankTable')}
 
 
