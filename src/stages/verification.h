@@ -19,7 +19,8 @@ struct VerifyScratch {
 // often mere texture passes it (a-contrario, after LSD: Grompone von Gioi et al. 2012). Edges behind something nearer
 // abstain, as does what lies outside an image. The scene's surface should be the model's inside the silhouette and fall
 // back beside it. Image edges that overrun the model's corners are counted, and segments that cross its outline. What
-// the object stands on should go on around its foot. O(samples * triangles + cells + edges * segments).
+// the object stands on should go on around its foot, and other sizes and poses should find fewer edges. O(samples *
+// triangles + cells + edges * segments + ends * samples * places).
 void GatherEvidence(const VerifyParams& params, const VerifyInput& in, const PreparedModel& model,
                     const RefinedPose& pose, VerifyScratch& scratch, Evidence& out);
 
