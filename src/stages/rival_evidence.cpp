@@ -10,10 +10,10 @@ namespace wirepose {
 namespace {
 
 constexpr float kMinDepthM = 0.05F;
-constexpr int kMaxSteps = 32;
+constexpr int kMaxSteps = 32;           // to each side; what would need more is looked at in wider steps
 constexpr float kPriorSamples = 2;      // without an edge: few samples say little
 constexpr std::size_t kMinSamples = 6;  // of the whole object
-constexpr std::size_t kMaxAxes = 8;
+constexpr std::size_t kMaxAxes = 8;     // a box has three; of what has more the axes of the largest faces
 
 using Sample = RivalScratch::Sample;
 using Samples = FixedVector<Sample, kMaxEdgeSamples>;
@@ -105,7 +105,8 @@ class RivalGatherer {
 
   void AddTurned(const Vector3& axis, float own, RivalEvidence& out) {
     Rivals all{.own = own};
-    const float step = (params_.turn_rad - params_.min_turn_rad) / static_cast<float>(std::max(params_.turns - 1, 1));
+    const float step =
+        (params_.max_turn_rad - params_.min_turn_rad) / static_cast<float>(std::max(params_.turns - 1, 1));
     for (int k = 0; k < params_.turns; ++k) {
       for (const float side : {-1.0F, 1.0F}) {
         Turn(R_ * axis, side * (params_.min_turn_rad + static_cast<float>(k) * step));

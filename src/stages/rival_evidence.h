@@ -12,13 +12,13 @@
 namespace wirepose {
 
 struct RivalEvidenceParams {
-  float reach = 0.25F;     // how far an end or the object is moved, of the diameter
-  float step_px = 4;       // between the places that are looked at: what an edge map's cells reach to both sides
-  float min_move_px = 6;   // nearer places see the edge itself
-  float min_end_px = 30;   // visible edges around an end; fewer tell nothing
-  float turn_rad = 0.36F;  // how far the object is turned, to both sides
-  float min_turn_rad = 0.09F;
-  int turns = 6;  // to each side
+  float reach = 0.25F;    // how far an end or the object is moved, of the diameter
+  float step_px = 4;      // between the places that are looked at: what an edge map's cells reach to both sides
+  float min_move_px = 6;  // nearer places see the edge itself
+  float min_end_px = 30;  // visible edges around an end; fewer tell nothing
+  // Angles that the object is turned by, to each side.
+  float min_turn_rad = 0.09F, max_turn_rad = 0.36F;
+  int turns = 6;
 };
 
 // Support is the share of samples of visible edges that find an image edge of their direction in both images. Right
@@ -51,7 +51,8 @@ struct RivalScratch {
 };
 
 // `samples`: of the edges that are seen at T_camera_model (rectified left camera), in the order of edges; every second
-// one is looked at. Of a second image that shows nothing nothing is asked. No heap. O(ends * samples * places).
+// one is looked at. Where the right image does not reach, or there is none, the left one alone decides. Nothing seen
+// gives gains of 0 and peaks of 1. No heap. O(ends * samples * (places + turns)).
 void GatherRivalEvidence(const RivalEvidenceParams& params, const RectifiedCamera& camera, const EdgeMap& left,
                          const EdgeMap& right, const PreparedModel& model, const Pose& T_camera_model,
                          const EdgeSamples& samples, RivalScratch& scratch, RivalEvidence& out);
