@@ -193,6 +193,11 @@ void PrepareModel(const ModelView& view, PreparedModel& out) {
   for (const ModelSymmetry& s : view.symmetries) {
     if (!out.symmetries.try_push_back(ToPose(s))) break;
   }
+  out.max_centre_shift_m = 0;
+  for (const Pose& s : out.symmetries) {
+    const Vector3 carried = (s * out.centre.cast<double>()).cast<float>();
+    out.max_centre_shift_m = std::max(out.max_centre_shift_m, (carried - out.centre).norm());
+  }
   for (std::size_t i = 0; i < out.corners.size(); ++i) {
     out.corners[i] = {(i & 1U) != 0 ? view.box_max_m.x() : view.box_min_m.x(),
                       (i & 2U) != 0 ? view.box_max_m.y() : view.box_min_m.y(),

@@ -57,6 +57,7 @@ struct PreparedFoot {
 struct PreparedModel {
   ModelView view;
   Vector3 centre = Vector3::Zero();  // of the bounding box
+  float max_centre_shift_m = 0;      // the farthest that a symmetry carries it
   FixedVector<PreparedEdge, kMaxModelEdges> edges;
   // Symmetries as poses, the identity first.
   FixedVector<Pose, kMaxModelSymmetries> symmetries;

@@ -341,11 +341,13 @@ void RankSets(CorrespondingSets& sets) {
 
 bool IsSamePose(const PreparedModel& model, const Matrix3& R1, const Vector3& t1, const Matrix3& R2, const Vector3& t2,
                 float tolerance_m) {
+  const Vector3 apart = (R1 * model.centre + t1) - (R2 * model.centre + t2);
+  const float nearby = tolerance_m + model.max_centre_shift_m;
+  if (apart.squaredNorm() >= nearby * nearby) return false;  // almost always
   const float limit = tolerance_m * tolerance_m;
   for (const Pose& symmetry : model.symmetries) {
     const Matrix3 S = symmetry.R.cast<float>();
     const Vector3 s = symmetry.t.cast<float>();
-    // Almost always the first corner tells.
     const auto meets = [&](const Vector3& corner) {
       return ((R1 * corner + t1) - (R2 * (S * corner + s) + t2)).squaredNorm() < limit;
     };

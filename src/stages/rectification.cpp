@@ -117,37 +117,37 @@ bool IsUsable(const CameraIntrinsics& c) {
   return finite && c.fx > 1 && c.fy > 1 && c.fx < 1e5 && c.fy < 1e5;
 }
 
-// One row at work: where its pixels lie in the raw image (16.16), and the four raw pixels around each place in one
-// word.
+// One row at work: where its pixels lie in the raw image, whole pixels as an offset and the rest (0..256; 256 in the
+// last column and row only), and the four raw pixels around each place in one word.
 struct RowScratch {
   std::array<std::int32_t, kMaxImageWidth> u, v;
   std::array<std::uint32_t, kMaxImageWidth> offset, four;
 };
 
-// Positions of columns [begin, end), both multiples of kNodeStep.
-void PlaceRow(const RowCursor& cursor, int begin, int end, RowScratch& s) {
-  constexpr int kStep = RectificationMap::kNodeStep;
-  RectificationMap::Node from = cursor.At(begin / kStep);
-  for (int x0 = begin; x0 < end; x0 += kStep) {
-    const RectificationMap::Node to = cursor.At(x0 / kStep + 1);
-    const std::int32_t dx = (to.x - from.x) / kStep, dy = (to.y - from.y) / kStep;
-    for (int i = 0; i < kStep; ++i) {
-      s.u[static_cast<std::size_t>(x0 + i)] = from.x + i * dx;
-      s.v[static_cast<std::size_t>(x0 + i)] = from.y + i * dy;
-    }
-    from = to;
-  }
-}
+// Raw pixels between two nodes: the first, and the step from one to the next.
+struct Run {
+  RectificationMap::Node at, step;
+};
 
-// Whole pixels into `offset`, the rest (0..256; 256 in the last column and row only) into u and v.
-WIREPOSE_VECTOR_KERNEL void SplitPlaces(int last_x, int last_y, int stride, int begin, int end, RowScratch& s) {
-  for (int x = begin; x < end; ++x) {
-    const auto i = static_cast<std::size_t>(x);
-    const std::int32_t u = s.u[i], v = s.v[i];
+// Pixels x0 to x0 + kNodeStep - 1. Those that are not valid get offsets that must not be looked up.
+WIREPOSE_INLINE void SplitPlaces(const Run& run, const ImageView& raw, int x0, RowScratch& s) {
+  const int last_x = raw.width - 2, last_y = raw.height - 2, stride = raw.stride;
+  for (int k = 0; k < RectificationMap::kNodeStep; ++k) {
+    const auto i = static_cast<std::size_t>(x0 + k);
+    const std::int32_t u = run.at.x + k * run.step.x, v = run.at.y + k * run.step.y;
     const std::int32_t xi = (u >> 16) < last_x ? u >> 16 : last_x, yi = (v >> 16) < last_y ? v >> 16 : last_y;
     s.offset[i] = static_cast<std::uint32_t>(yi * stride + xi);
     s.u[i] = (u - (xi << 16)) >> 8;
     s.v[i] = (v - (yi << 16)) >> 8;
+  }
+}
+
+using Runs = std::array<Run, RectificationMap::kNodesX>;
+
+// Runs [begin, end) of a row.
+WIREPOSE_VECTOR_KERNEL void PlaceRow(const Runs& runs, const ImageView& raw, int begin, int end, RowScratch& s) {
+  for (int k = begin; k < end; ++k) {
+    SplitPlaces(runs[static_cast<std::size_t>(k)], raw, k * RectificationMap::kNodeStep, s);
   }
 }
 
@@ -162,11 +162,24 @@ WIREPOSE_VECTOR_KERNEL void BlendRow(const RowScratch& s, int begin, int end, st
   }
 }
 
+// Runs [begin, end) of a row.
+void FindRuns(const RowCursor& cursor, int begin, int end, Runs& runs) {
+  constexpr int kStep = RectificationMap::kNodeStep;
+  RectificationMap::Node from = cursor.At(begin);
+  for (int k = begin; k < end; ++k) {
+    const RectificationMap::Node to = cursor.At(k + 1);
+    runs[static_cast<std::size_t>(k)] = {from, {(to.x - from.x) / kStep, (to.y - from.y) / kStep}};
+    from = to;
+  }
+}
+
 // Bilinear values of columns [begin, end): arithmetic in vectors, only the look-up goes pixel by pixel.
 void ResampleRow(ImageView raw, const RowCursor& cursor, int begin, int end, RowScratch& s, std::uint8_t* row) {
   constexpr int kStep = RectificationMap::kNodeStep;
-  PlaceRow(cursor, begin / kStep * kStep, (end + kStep - 1) / kStep * kStep, s);
-  SplitPlaces(raw.width - 2, raw.height - 2, raw.stride, begin, end, s);
+  const int first = begin / kStep, last = (end + kStep - 1) / kStep;
+  Runs runs;
+  FindRuns(cursor, first, last, runs);
+  PlaceRow(runs, raw, first, last, s);
   for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
     const std::uint8_t* p = raw.data + s.offset[i];
     const std::uint8_t* q = p + raw.stride;

@@ -144,12 +144,28 @@ struct Slope {
   int low = 0, high = 0;
 };
 
-Slope MakeSlope(const RowSamples& rows, int steps) {
+// From the segment's middle (0) to its ends (-1 and 1).
+using RowPositions = std::array<float, kMaxStereoRows>;
+
+RowPositions PositionsOf(const RowSamples& rows) {
+  RowPositions positions{};
+  for (std::size_t r = 0; r < rows.size(); ++r) positions[r] = 2 * rows[r].t - 1;
+  return positions;
+}
+
+// Slopes advance such that the ends move by one pixel, up to this many.
+constexpr int kMaxSlope = 12;
+
+Slope MakeSlope(const RowPositions& positions, int steps) {
+  constexpr int kShift = 2 * kMaxSlope;  // makes what is rounded positive: conversion truncates
   Slope slope;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    slope.shift[r] = static_cast<int>(std::floor((2 * rows[r].t - 1) * static_cast<float>(steps) + 0.5F));
-    slope.low = std::min(slope.low, slope.shift[r]);
-    slope.high = std::max(slope.high, slope.shift[r]);
+  for (std::size_t r = 0; r < kMaxStereoRows; ++r) {
+    const float shift = positions[r] * static_cast<float>(steps) + (static_cast<float>(kShift) + 0.5F);
+    slope.shift[r] = static_cast<int>(shift) - kShift;
+  }
+  for (const int shift : slope.shift) {
+    slope.low = std::min(slope.low, shift);
+    slope.high = std::max(slope.high, shift);
   }
   return slope;
 }
@@ -193,8 +209,6 @@ WIREPOSE_VECTOR_KERNEL std::uint16_t LowestBeside(const std::array<std::uint16_t
   return lowest;
 }
 
-// Slopes advance such that the ends move by one pixel, up to this many.
-constexpr int kMaxSlope = 12;
 static_assert(kMaxDisparity - 4 * kMaxSlope - 1 >= kCostBlock, "shifts stay below 2 kMaxSlope, even beyond the ends");
 
 // Stands for rows that a short segment does not have.
@@ -207,9 +221,10 @@ Match SearchDisparity(const StereoLineParams& params, const Segment2& segment, c
   const float reach = 0.5F * params.max_disparity_slope * segment.Length();  // of an end against the middle
   const int steps = std::min(kMaxSlope, static_cast<int>(reach));
   scratch.best_at.fill(0xFFFF);
+  const RowPositions positions = PositionsOf(rows);
   std::uint32_t best = 0xFFFF;
   for (int s = -steps; s <= steps; ++s) {
-    const Slope slope = MakeSlope(rows, s);
+    const Slope slope = MakeSlope(positions, s);
     const int first = 1 - slope.low, count = kMaxDisparity - slope.high - first;
     const auto row = [&](std::size_t r) {
       return r < rows.size() ? scratch.cost[r].data() + first + slope.shift[r] : kNoRow.data();
