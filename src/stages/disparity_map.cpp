@@ -9,7 +9,7 @@ namespace {
 
 using Scratch = DisparityScratch;
 constexpr int kDepth = kMapDisparities;
-constexpr std::uint16_t kGuard = 0x3FFF;
+constexpr std::uint8_t kGuard = 0xFF - 40;  // what a step adds still fits
 
 // Means of 2 x 2 pixels of row pair j.
 void HalveRow(const NormalizedPlane& plane, int j, int width, Scratch::Row& out) {
@@ -21,7 +21,7 @@ void HalveRow(const NormalizedPlane& plane, int j, int width, Scratch::Row& out)
   }
 }
 
-// difference[x][d] = |left(x) - right(x - d)|, clipped; what lies left of the right image costs the most.
+// difference[x][d] = |left(x) - right(x - d)| in steps, clipped; what lies left of the right image costs the most.
 WIREPOSE_VECTOR_KERNEL void FillDifferences(const Scratch::Row& left, const std::uint8_t* right_reversed, int width,
                                             std::uint8_t clip, std::uint8_t* out) {
   for (int x = 0; x < width; ++x) {
@@ -30,53 +30,53 @@ WIREPOSE_VECTOR_KERNEL void FillDifferences(const Scratch::Row& left, const std:
     std::uint8_t* o = out + x * kDepth;
     for (int d = 0; d < kDepth; ++d) {
       const auto difference = static_cast<std::uint8_t>((l > r[d] ? l : r[d]) - (l > r[d] ? r[d] : l));
-      o[d] = difference < clip ? difference : clip;
+      const auto steps = static_cast<std::uint8_t>(difference / kDifferenceStep);
+      o[d] = steps < clip ? steps : clip;
     }
     for (int d = x + 1; d < kDepth; ++d) o[d] = clip;
   }
 }
 
 // Sum of one column of three pixels, all disparities.
-inline void SumColumn(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, std::uint16_t* out) {
-  for (int d = 0; d < kDepth; ++d) out[d] = static_cast<std::uint16_t>(a[d] + b[d] + c[d]);
+inline void SumColumn(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c, std::uint8_t* out) {
+  for (int d = 0; d < kDepth; ++d) out[d] = static_cast<std::uint8_t>(a[d] + b[d] + c[d]);
 }
 
 // cost[x] = sum of columns x - 1, x and x + 1 of three rows of differences, the border repeated.
 WIREPOSE_VECTOR_KERNEL void SumNeighbours(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* c,
-                                          int width, std::uint16_t* __restrict cost) {
-  std::uint16_t columns[3][kDepth];
+                                          int width, std::uint8_t* __restrict cost) {
+  std::uint8_t columns[3][kDepth];
   SumColumn(a, b, c, columns[0]);
   SumColumn(a, b, c, columns[2]);  // stands before the first
   for (int x = 0; x < width; ++x) {
     const int next = std::min(x + 1, width - 1) * kDepth;
     SumColumn(a + next, b + next, c + next, columns[(x + 1) % 3]);
-    std::uint16_t* out = cost + x * kDepth;
+    std::uint8_t* out = cost + x * kDepth;
     for (int d = 0; d < kDepth; ++d) {
-      out[d] = static_cast<std::uint16_t>(columns[0][d] + columns[1][d] + columns[2][d]);
+      out[d] = static_cast<std::uint8_t>(columns[0][d] + columns[1][d] + columns[2][d]);
     }
   }
 }
 
 struct Steps {
-  std::uint16_t small, large;
+  std::uint8_t small, large;
 };
 
-// One step of a path: L(d) = C(d) + min(L'(d), L'(d +- 1) + small, min L' + large) - min L'. Adds L to `sum`, or puts
-// it there (kFirst), writes it to `out` (guards stay) and returns its minimum. `previous` and `out` point at disparity
-// 0 behind the guard.
-template <bool kFirst>
-WIREPOSE_INLINE std::uint16_t Advance(const std::uint16_t* cost, const std::uint16_t* previous, std::uint16_t lowest,
-                                      Steps steps, std::uint16_t* out, std::uint16_t* sum) {
-  const auto limit = static_cast<std::uint16_t>(lowest + steps.large);
-  std::uint16_t least = 0xFFFF;
+// One step of a path: L(d) = C(d) + min(L'(d), L'(d +- 1) + small, min L' + large) - min L'. Writes L to `out` and
+// returns its minimum. Guards stay.
+WIREPOSE_INLINE std::uint8_t Advance(const std::uint8_t* cost, const Scratch::Path& before, std::uint8_t lowest,
+                                     Steps steps, Scratch::Path& path) {
+  const auto limit = static_cast<std::uint8_t>(lowest + steps.large);
+  const std::uint8_t* previous = before.data() + 1;
+  std::uint8_t* out = path.data() + 1;
+  std::uint8_t least = 0xFF;
   for (int d = 0; d < kDepth; ++d) {
-    const std::uint16_t side = previous[d - 1] < previous[d + 1] ? previous[d - 1] : previous[d + 1];
-    const auto stepped = static_cast<std::uint16_t>(side + steps.small);
-    std::uint16_t m = previous[d] < stepped ? previous[d] : stepped;
+    const std::uint8_t side = previous[d - 1] < previous[d + 1] ? previous[d - 1] : previous[d + 1];
+    const auto stepped = static_cast<std::uint8_t>(side + steps.small);
+    std::uint8_t m = previous[d] < stepped ? previous[d] : stepped;
     m = m < limit ? m : limit;
-    const auto value = static_cast<std::uint16_t>(cost[d] + m - lowest);
+    const auto value = static_cast<std::uint8_t>(cost[d] + m - lowest);
     out[d] = value;
-    sum[d] = static_cast<std::uint16_t>(kFirst ? value : sum[d] + value);
     least = least < value ? least : value;
   }
   return least;
@@ -87,98 +87,83 @@ void Reset(Scratch::Path& path) {
   path.front() = path.back() = kGuard;
 }
 
-// The paths of a row that are under way.
-struct RowPaths {
-  Scratch::Path from_left[2], from_right[2];
-  std::uint16_t left_lowest = 0, right_lowest = 0;
+// The three paths of a row; rows alternate in `parity`. Both directions at once: each waits for its own last step only.
+WIREPOSE_VECTOR_KERNEL void FollowPaths(Steps steps, int width, std::size_t parity, const Scratch::Path& start,
+                                        Scratch& s) {
+  const Scratch::Path *left = &start, *right = &start;
+  std::uint8_t left_lowest = 0, right_lowest = 0;
+  for (int x = 0; x < width; ++x) {
+    const auto i = static_cast<std::size_t>(x), mirrored = static_cast<std::size_t>(width - 1 - x);
+    const std::uint8_t* cost = s.cost.data() + i * kDepth;
+    left_lowest = Advance(cost, *left, left_lowest, steps, s.from_left[i]);
+    s.above_lowest[i] = Advance(cost, s.above[1 - parity][i], s.above_lowest[i], steps, s.above[parity][i]);
+    right_lowest = Advance(s.cost.data() + mirrored * kDepth, *right, right_lowest, steps, s.from_right[mirrored]);
+    left = &s.from_left[i];
+    right = &s.from_right[mirrored];
+  }
+}
+
+// The three paths' costs at a pixel, by disparity.
+struct PathCosts {
+  const std::uint8_t *left, *right, *above;
+
+  PathCosts(const Scratch& scratch, std::size_t parity, int x)
+      : left(scratch.from_left[static_cast<std::size_t>(x)].data() + 1),
+        right(scratch.from_right[static_cast<std::size_t>(x)].data() + 1),
+        above(scratch.above[parity][static_cast<std::size_t>(x)].data() + 1) {}
+  [[nodiscard]] int Sum(int d) const { return left[d] + right[d] + above[d]; }
 };
 
-// All three paths one step on: at column x that from the left and that from above, at its mirror image that from the
-// right. Both directions at once: each waits for its own last step only. kFirst: nothing has been summed there yet.
-template <bool kFirst>
-WIREPOSE_INLINE void AdvanceAll(Steps steps, int width, int x, std::size_t parity, RowPaths& p, Scratch& scratch) {
-  const auto column = static_cast<std::size_t>(x);
-  const std::uint16_t* cost = scratch.cost.data() + x * kDepth;
-  std::uint16_t* sum = scratch.sum.data() + x * kDepth;
-  std::uint16_t& above_lowest = scratch.above_lowest[column];
-  const int mirrored = (width - 1 - x) * kDepth;
-  p.left_lowest = Advance<kFirst>(cost, p.from_left[x % 2].data() + 1, p.left_lowest, steps,
-                                  p.from_left[(x + 1) % 2].data() + 1, sum);
-  above_lowest = Advance<false>(cost, scratch.above[1 - parity][column].data() + 1, above_lowest, steps,
-                                scratch.above[parity][column].data() + 1, sum);
-  p.right_lowest = Advance<kFirst>(scratch.cost.data() + mirrored, p.from_right[x % 2].data() + 1, p.right_lowest,
-                                   steps, p.from_right[(x + 1) % 2].data() + 1, scratch.sum.data() + mirrored);
-}
+struct Winner {
+  std::uint16_t disparity, cost;
+};
 
-// Sums the three paths of a row into scratch.sum; rows alternate in `parity`.
-WIREPOSE_VECTOR_KERNEL void SumPaths(Steps steps, int width, std::size_t parity, Scratch& scratch) {
-  RowPaths paths;
-  for (std::size_t k = 0; k < 2; ++k) {
-    Reset(paths.from_left[k]);
-    Reset(paths.from_right[k]);
-  }
-  // In the middle of an odd width both directions meet in one step.
-  std::fill_n(scratch.sum.begin() + static_cast<std::ptrdiff_t>(width / 2) * kDepth, kDepth, std::uint16_t{0});
-  int x = 0;
-  for (; x < width / 2; ++x) AdvanceAll<true>(steps, width, x, parity, paths, scratch);
-  for (; x < width; ++x) AdvanceAll<false>(steps, width, x, parity, paths, scratch);
-}
-
-// The first of the lowest sums: the lowest of each block of lanes, then the place in its block.
-inline int FindLowest(const std::uint16_t* sum) {
-  constexpr int kBlock = 16;
-  static_assert(kDepth % kBlock == 0);
-  int block = 0;
+// The first of the lowest sums. Sum and disparity as one number, so that one minimum finds both.
+WIREPOSE_INLINE Winner FindLowest(const PathCosts& costs) {
+  static_assert((3 * 0xFF + 1) * kDepth <= 0xFFFF);
   std::uint16_t lowest = 0xFFFF;
-  for (int b = 0; b < kDepth; b += kBlock) {
-    std::uint16_t here = 0xFFFF;
-    for (int d = b; d < b + kBlock; ++d) here = here < sum[d] ? here : sum[d];
-    if (here >= lowest) continue;
-    lowest = here;
-    block = b;
+  for (int d = 0; d < kDepth; ++d) {
+    const auto both = static_cast<std::uint16_t>(costs.Sum(d) * kDepth + d);
+    lowest = lowest < both ? lowest : both;
   }
-  int d = block;
-  while (sum[d] != lowest) ++d;
-  return d;
+  return {static_cast<std::uint16_t>(lowest % kDepth), static_cast<std::uint16_t>(lowest / kDepth)};
 }
 
-// The winner of every pixel in scratch.best_left, and of every pixel of the right image.
-WIREPOSE_VECTOR_KERNEL void ChooseBest(int width, Scratch& scratch) {
+// The winner of every pixel of both images.
+WIREPOSE_VECTOR_KERNEL void ChooseBest(int width, std::size_t parity, Scratch& scratch) {
   auto& [right_cost, right_disparity] = scratch.best_right;
   right_cost.fill(0xFFFF);
   right_disparity.fill(0);
   for (int x = 0; x < width; ++x) {
-    const std::uint16_t* sum = scratch.sum.data() + x * kDepth;
-    const int d = FindLowest(sum);
-    const std::uint16_t lowest = sum[d];
-    scratch.best_left[static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(d);
-    const auto r = static_cast<std::size_t>(std::max(0, x - d));
-    if (x < d || lowest >= right_cost[r]) continue;
-    right_cost[r] = lowest;
-    right_disparity[r] = static_cast<std::uint16_t>(d);
+    const Winner best = FindLowest({scratch, parity, x});
+    scratch.best_left[static_cast<std::size_t>(x)] = best.disparity;
+    const auto r = static_cast<std::size_t>(std::max(0, x - best.disparity));
+    if (x < best.disparity || best.cost >= right_cost[r]) continue;
+    right_cost[r] = best.cost;
+    right_disparity[r] = best.disparity;
   }
 }
 
 // Vertex of the parabola through the costs beside the winner, in units of the map.
-std::uint16_t Refined(const std::uint16_t* sum, int d) {
+std::uint16_t Refined(const PathCosts& costs, int d) {
   constexpr int kUnit = static_cast<int>(DisparityMap::kOne) * DisparityMap::kScale;
   int shift = 0;
   if (d > 0 && d + 1 < kDepth) {
-    const int before = sum[d - 1], here = sum[d], after = sum[d + 1];
+    const int before = costs.Sum(d - 1), here = costs.Sum(d), after = costs.Sum(d + 1);
     const int bend = before - 2 * here + after;
     if (bend > 0) shift = (before - after) * kUnit / (2 * bend);
   }
   return static_cast<std::uint16_t>(std::max(1, d * kUnit + std::clamp(shift, -kUnit / 2, kUnit / 2)));
 }
 
-void WriteRow(int max_asymmetry, int width, const Scratch& scratch, std::uint16_t* out) {
+void WriteRow(int max_asymmetry, int width, std::size_t parity, const Scratch& scratch, std::uint16_t* out) {
   for (int x = 0; x < width; ++x) {
     out[x] = DisparityMap::kUnknown;
     const int d = scratch.best_left[static_cast<std::size_t>(x)];
     if (d > x) continue;
     const int back = scratch.best_right[1][static_cast<std::size_t>(x - d)];
     // Nothing is at infinity: blank areas that no texture reaches end up there.
-    if (d > 0 && std::abs(back - d) <= max_asymmetry) out[x] = Refined(scratch.sum.data() + x * kDepth, d);
+    if (d > 0 && std::abs(back - d) <= max_asymmetry) out[x] = Refined({scratch, parity, x}, d);
   }
 }
 
@@ -210,7 +195,7 @@ void ReadDifferences(const DisparityMapParams& params, const NormalizedPlane& le
   HalveRow(right, j, width, r);
   std::array<std::uint8_t, Scratch::kWidth + kDepth> reversed{};
   for (int x = 0; x < width; ++x) reversed[static_cast<std::size_t>(width - 1 - x)] = r[static_cast<std::size_t>(x)];
-  FillDifferences(l, reversed.data(), width, static_cast<std::uint8_t>(std::min<int>(params.max_difference, 255)),
+  FillDifferences(l, reversed.data(), width, params.max_difference,
                   scratch.difference[static_cast<std::size_t>(j % 3)].data());
 }
 
@@ -220,9 +205,11 @@ void ComputeDisparityMap(const DisparityMapParams& params, int width, int height
                          const NormalizedPlane& right, DisparityScratch& scratch, DisparityMap& out) {
   out.width = width / DisparityMap::kScale;
   out.height = height / DisparityMap::kScale;
-  for (auto& row : scratch.above) {
-    for (Scratch::Path& path : row) Reset(path);
-  }
+  Scratch::Path start;
+  Reset(start);
+  scratch.from_left.fill(start);
+  scratch.from_right.fill(start);
+  for (auto& row : scratch.above) row.fill(start);
   scratch.above_lowest.fill(0);
   const auto row = [&](int j) {
     return scratch.difference[static_cast<std::size_t>(std::clamp(j, 0, out.height - 1) % 3)].data();
@@ -234,9 +221,10 @@ void ComputeDisparityMap(const DisparityMapParams& params, int width, int height
     const int j = k * kRowStep;
     for (; read < std::min(j + 2, out.height); ++read) ReadDifferences(params, left, right, read, out.width, scratch);
     SumNeighbours(row(j - 1), row(j), row(j + 1), out.width, scratch.cost.data());
-    SumPaths({params.small_step, params.large_step}, out.width, static_cast<std::size_t>(k % 2), scratch);
-    ChooseBest(out.width, scratch);
-    WriteRow(params.max_asymmetry, out.width, scratch, scratch.raw.data() + k * kWidth);
+    const auto parity = static_cast<std::size_t>(k % 2);
+    FollowPaths({params.small_step, params.large_step}, out.width, parity, start, scratch);
+    ChooseBest(out.width, parity, scratch);
+    WriteRow(params.max_asymmetry, out.width, parity, scratch, scratch.raw.data() + k * kWidth);
   }
   for (int k = 0; k < matched; ++k) {
     const std::uint16_t* here = scratch.raw.data() + k * kWidth;

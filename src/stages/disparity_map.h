@@ -29,27 +29,31 @@ struct DisparityMap {
 };
 
 struct DisparityMapParams {
-  std::uint16_t small_step = 180;  // cost of a change by one between neighbours, beside sums of 3 x 3 differences ...
-  std::uint16_t large_step = 700;  // ... and of any larger change
-  std::uint16_t max_difference = 96;  // of two normalised values: more says no more
-  int max_asymmetry = 1;              // between the maps of both images, half pixels
+  std::uint8_t small_step = 22;     // cost of a change by one between neighbours, beside sums of 3 x 3 differences ...
+  std::uint8_t large_step = 88;     // ... and of any larger change
+  std::uint8_t max_difference = 12;  // of two normalised values, in steps of kDifferenceStep: more says no more
+  int max_asymmetry = 1;            // between the maps of both images, half pixels
 };
 
 inline constexpr int kMapDisparities = 80;  // half pixels: surfaces from 0.4 m at f*B = 63 px*m
 // Every second row of the map is matched and stands for the next one too: half the time, the same recognition.
 inline constexpr int kRowStep = 2;
 
+// Differences are counted in steps: so the costs of a path, at most 9 max_difference + large_step, fit into a byte.
+inline constexpr int kDifferenceStep = 8;
+
 // Work space; contents have no meaning between calls.
 struct DisparityScratch {
   static constexpr int kWidth = DisparityMap::kMaxWidth, kDepth = kMapDisparities;
   using Row = std::array<std::uint8_t, kWidth>;
-  using Path = std::array<std::uint16_t, kDepth + 2>;  // a guard before the first disparity and after the last
+  using Path = std::array<std::uint8_t, kDepth + 2>;  // a guard before the first disparity and after the last
 
   std::array<std::array<std::uint8_t, std::size_t{kWidth} * kDepth>, 3> difference;  // of three rows of pixels
-  std::array<std::uint16_t, std::size_t{kWidth} * kDepth> cost;                      // summed over 3 x 3 pixels
-  std::array<std::uint16_t, std::size_t{kWidth} * kDepth> sum;                       // over the paths
-  std::array<std::array<Path, kWidth>, 2> above;  // path costs from above, of this row and the one before
-  std::array<std::uint16_t, kWidth> above_lowest;
+  std::array<std::uint8_t, std::size_t{kWidth} * kDepth> cost;                       // summed over 3 x 3 pixels
+  // Path costs of the row at work: from the left, from the right, and from above with those of the row before.
+  std::array<Path, kWidth> from_left, from_right;
+  std::array<std::array<Path, kWidth>, 2> above;
+  std::array<std::uint8_t, kWidth> above_lowest;
   std::array<std::array<std::uint16_t, kWidth>, 2> best_right;  // lowest cost and its disparity in the right image
   std::array<std::uint16_t, kWidth> best_left;
   std::array<std::uint16_t, std::size_t{kWidth} * ((DisparityMap::kMaxHeight + kRowStep - 1) / kRowStep)>

@@ -63,7 +63,7 @@ bool PoseScorer::Score(const Matrix3& R, const Vector3& t, const EdgeBits& visib
     total += n;
     AddSupport(scene_.left, left_gain_, p.a, p.b, n, left);
     sampled.push_back({p, n});
-    if (static_cast<int>(sampled.size()) == params_.first_edges &&
+    if (static_cast<int>(sampled.size()) >= params_.first_edges &&
         static_cast<float>(left.hits) < params_.min_first_support * static_cast<float>(left.inside)) {
       return false;
     }

@@ -63,7 +63,7 @@ class Twin {
   [[nodiscard]] int Difference(int x, int y, int d) const {
     x = std::clamp(x, 0, w_ - 1);
     y = std::clamp(y, 0, h_ - 1);
-    return d > x ? 96 : std::min(96, std::abs(Half(left_, x, y) - Half(right_, x - d, y)));
+    return d > x ? 12 : std::min(12, std::abs(Half(left_, x, y) - Half(right_, x - d, y)) / 8);
   }
   [[nodiscard]] int Cost(int x, int y, int d) const {
     int sum = 0;
@@ -78,9 +78,9 @@ class Twin {
     for (int d = 0; d < kN; ++d) {
       int best = 0;
       if (!previous.empty()) {
-        best = std::min(previous[static_cast<std::size_t>(d)], lowest + 700);
-        if (d > 0) best = std::min(best, previous[static_cast<std::size_t>(d - 1)] + 180);
-        if (d + 1 < kN) best = std::min(best, previous[static_cast<std::size_t>(d + 1)] + 180);
+        best = std::min(previous[static_cast<std::size_t>(d)], lowest + 88);
+        if (d > 0) best = std::min(best, previous[static_cast<std::size_t>(d - 1)] + 22);
+        if (d + 1 < kN) best = std::min(best, previous[static_cast<std::size_t>(d + 1)] + 22);
       }
       next[static_cast<std::size_t>(d)] = Cost(x, y, d) + best - lowest;
     }

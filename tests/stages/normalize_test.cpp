@@ -23,18 +23,19 @@ GrayImage Textured(double gain, double offset, double scale = 6) {
   return Paint(160, 120, [=](int x, int y) { return offset + gain * 90 * testing::Texture(x, y, scale, 5); });
 }
 
-// 128 + 48 (I - mean) / (deviation + 4) over 15 x 15 pixels, borders repeated.
+// 128 + 48 (I - mean) / (deviation + 4) over the 14 x 14 pixels around the pixel's block of 2 x 2, borders repeated.
 double ByFormula(const GrayImage& image, int x, int y) {
   double sum = 0, square = 0;
-  for (int dy = -7; dy <= 7; ++dy) {
-    for (int dx = -7; dx <= 7; ++dx) {
-      const double v = image.view()(std::clamp(x + dx, 0, image.width - 1), std::clamp(y + dy, 0, image.height - 1));
+  for (int row = y / 2 * 2 - 6; row < y / 2 * 2 + 8; ++row) {
+    for (int column = x / 2 * 2 - 6; column < x / 2 * 2 + 8; ++column) {
+      const double v =
+          image.view()(std::clamp(column, 0, image.width - 1), std::clamp(row, 0, image.height - 1));
       sum += v;
       square += v * v;
     }
   }
-  const double mean = sum / 225;
-  const double deviation = std::sqrt(std::max(0.0, square / 225 - mean * mean));
+  const double mean = sum / 196;
+  const double deviation = std::sqrt(std::max(0.0, square / 196 - mean * mean));
   return std::clamp(128 + 48 * (image.view()(x, y) - mean) / (deviation + 4), 0.0, 255.0);
 }
 
