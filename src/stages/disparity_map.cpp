@@ -12,12 +12,12 @@ constexpr int kDepth = kMapDisparities;
 constexpr std::uint8_t kGuard = 0xFF - 40;  // what a step adds still fits
 
 // Means of 2 x 2 pixels of row pair j.
-void HalveRow(const NormalizedPlane& plane, int j, int width, Scratch::Row& out) {
+WIREPOSE_VECTOR_KERNEL void HalveRow(const NormalizedPlane& plane, int j, int width, std::uint8_t* __restrict out) {
   const std::uint8_t* a = plane.data() + static_cast<std::ptrdiff_t>(2 * j) * kMaxImageWidth;
   const std::uint8_t* b = a + kMaxImageWidth;
   for (int i = 0; i < width; ++i) {
-    out[static_cast<std::size_t>(i)] =
-        static_cast<std::uint8_t>((a[2 * i] + a[2 * i + 1] + b[2 * i] + b[2 * i + 1] + 2) / 4);
+    const auto sum = static_cast<std::uint16_t>(a[2 * i] + a[2 * i + 1] + b[2 * i] + b[2 * i + 1] + 2);
+    out[i] = static_cast<std::uint8_t>(sum / 4);
   }
 }
 
@@ -191,8 +191,8 @@ WIREPOSE_VECTOR_KERNEL void DropSpeckles(const std::uint16_t* above, const std::
 void ReadDifferences(const DisparityMapParams& params, const NormalizedPlane& left, const NormalizedPlane& right, int j,
                      int width, Scratch& scratch) {
   Scratch::Row l, r;
-  HalveRow(left, j, width, l);
-  HalveRow(right, j, width, r);
+  HalveRow(left, j, width, l.data());
+  HalveRow(right, j, width, r.data());
   std::array<std::uint8_t, Scratch::kWidth + kDepth> reversed{};
   for (int x = 0; x < width; ++x) reversed[static_cast<std::size_t>(width - 1 - x)] = r[static_cast<std::size_t>(x)];
   FillDifferences(l, reversed.data(), width, params.max_difference,
