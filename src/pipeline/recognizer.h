@@ -86,7 +86,7 @@ struct RecognizerParams {
   CorrespondenceParams correspondences;
   HypothesisParams hypotheses;
   PromotionParams promotion;
-  RefineParams refine{.iterations = 4, .samples = {.step_px = 14}};  // from afar
+  RefineParams refine{.iterations = 4, .samples = {.step_px = 14}, .max_rms_px = 2.0F};  // from afar
   RefineParams polish{.samples = {.step_px = 6}};                    // then with all that the images tell of the pose
   VerifyParams verify;
   SelectParams select;
