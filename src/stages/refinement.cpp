@@ -27,22 +27,10 @@ bool FindEdge(const SmoothPlane& plane, int width, int height, const Vector2& p,
   return best > 0;
 }
 
-// One found offset with its derivative by the twist.
-struct OffsetRow {
-  Eigen::Matrix<double, 1, 6> J;
-  double residual = 0;  // px, image edge minus model edge along the normal
-  double weight = 0;
-  std::uint16_t edge = 0;
-  std::uint8_t image = 0;            // 0: left
-  Vector2 normal = Vector2::Zero();  // as measured: a thousand rows lie on the stack
-};
-
-using OffsetRows = FixedVector<OffsetRow, 2 * kMaxEdgeSamples>;
-
 class Refiner {
  public:
   Refiner(const RefineParams& params, const SceneImages& images, const PreparedModel& model, RefineScratch& scratch)
-      : params_(params), images_(images), model_(model), scratch_(scratch) {}
+      : params_(params), images_(images), model_(model), scratch_(scratch), equations_(params.errors) {}
 
   void Run(const Pose& start, RefinedPose& out) {
     Pose T = start;
@@ -140,31 +128,21 @@ class Refiner {
     return std::max(static_cast<double>(params_.sigma_floor_px), 1.4826 * static_cast<double>(*middle));
   }
 
-  // The variance for which a sample of an edge has weight 1: the samples of an edge share its error, so each of them is
-  // worth less than its noise says.
-  [[nodiscard]] double UnitVariance() const {
-    double edges = 0;
-    for (std::size_t i = 0; i < rows_.size(); ++i) edges += i == 0 || rows_[i].edge != rows_[i - 1].edge ? 1 : 0;
-    const double per_edge = static_cast<double>(rows_.size()) / std::max(edges, 1.0);
-    const auto noise = static_cast<double>(params_.noise_px), edge = static_cast<double>(params_.edge_px);
-    return noise * noise + per_edge * edge * edge;
-  }
-
-  bool Solve(Vector6d& twist) {
+  // Geman-McClure.
+  void Weigh() {
     sigma_ = Scale();
-    H_.setZero();
-    Vector6d g = Vector6d::Zero();
     for (OffsetRow& row : rows_) {
       const double r = row.residual / (2 * sigma_);
       const double k = 1 / (1 + r * r);
       row.weight = k * k;
-      const Vector6d pull = row.weight * row.J.transpose();
-      for (int c = 0; c < 6; ++c) {
-        for (int i = c; i < 6; ++i) H_(i, c) += pull(i) * row.J(c);
-      }
-      g += row.weight * row.residual * row.J.transpose();
     }
-    AddSurface(scratch_.surface_rows, UnitVariance(), H_, g);
+  }
+
+  bool Solve(Vector6d& twist) {
+    Weigh();
+    Vector6d g;
+    equations_.Sum(rows_, H_, g);
+    AddSurface(scratch_.surface_rows, equations_.UnitVariance(), H_, g);
     // Levenberg damping: a thousandth of the mean information, so that what the edges do not tell stays put.
     Matrix6d damped = H_;
     for (int i = 0; i < 6; ++i) damped(i, i) *= 1.001;
@@ -174,6 +152,7 @@ class Refiner {
     // A step beyond 0.2 rad or a fifth of the distance has left what one linearisation can say.
     const double size = std::max(twist.head<3>().norm() / 0.2, twist.tail<3>().norm() / 0.2);
     if (size > 1) twist /= size;
+    equations_.Solved(twist);
     return true;
   }
 
@@ -188,7 +167,9 @@ class Refiner {
     }
     const Eigen::LDLT<Matrix6d> ldlt(H_);
     if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 1e-9) || weight < 6) return;
-    const Matrix6d spread = SpreadOfGradient();
+    Matrix6d spread = equations_.Spread(rows_);
+    if (!scratch_.surface_rows.empty())
+      spread += SpreadOfSurface(params_.surface, scratch_.surface_rows, equations_.UnitVariance());
     // Column by column: Eigen solves for a whole matrix by blocks, on the heap where it cannot prove them small.
     Matrix6d half;
     for (int i = 0; i < 6; ++i) half.col(i) = ldlt.solve(Vector6d(spread.col(i)));
@@ -200,43 +181,8 @@ class Refiner {
     out.position_sigma_m = static_cast<float>(sigma_ * std::sqrt(information));
     out.rms_px = static_cast<float>(std::sqrt(sum / weight));
     out.inliers = static_cast<std::uint16_t>(inliers);
+    out.shift_px = static_cast<float>(equations_.shift().norm());
     out.ok = out.rms_px < params_.max_rms_px && out.covariance.allFinite();
-  }
-
-  // Covariance of the sum of w J r over all samples. Their errors are not independent: samples of one edge share its
-  // error (it may lie on a shadow or on the next line of print), all samples of an image share that image's (its
-  // calibration, its blur). Errors of edges are taken from how much their mean residuals scatter.
-  [[nodiscard]] Matrix6d SpreadOfGradient() const {
-    Matrix6d spread = Matrix6d::Zero();
-    Eigen::Matrix<double, 6, 4> image = Eigen::Matrix<double, 6, 4>::Zero();  // left x, y, right x, y
-    Matrix6d edges = Matrix6d::Zero();
-    double scatter = 0, total = 0;
-    const double noise = static_cast<double>(params_.noise_px) * static_cast<double>(params_.noise_px);
-    for (std::size_t i = 0; i < rows_.size();) {
-      Vector6d edge = Vector6d::Zero();
-      double weight = 0, mean = 0;
-      const std::uint16_t id = rows_[i].edge;
-      for (; i < rows_.size() && rows_[i].edge == id; ++i) {
-        const OffsetRow& row = rows_[i];
-        const Vector6d g = row.weight * row.J.transpose();
-        spread += noise * g * g.transpose();
-        edge += g;
-        for (int k = 0; k < 2; ++k) image.col(2 * row.image + k) += static_cast<double>(row.normal[k]) * g;
-        weight += row.weight;
-        mean += row.weight * row.residual;
-      }
-      if (weight <= 0) continue;
-      edges += edge * edge.transpose();
-      scatter += mean * mean / weight;
-      total += weight;
-    }
-    const auto floor = static_cast<double>(params_.edge_px), common = static_cast<double>(params_.image_px);
-    const auto gain = static_cast<double>(params_.scatter_gain);
-    spread += (floor * floor + gain * scatter / std::max(total, 1e-9)) * edges;
-    spread += common * common * image * image.transpose();
-    if (!scratch_.surface_rows.empty())
-      spread += SpreadOfSurface(params_.surface, scratch_.surface_rows, UnitVariance());
-    return spread;
   }
 
   const RefineParams& params_;
@@ -245,6 +191,7 @@ class Refiner {
   RefineScratch& scratch_;
   OffsetRows rows_;
   std::array<std::uint16_t, kMaxModelEdges> found_{}, sampled_{};
+  OffsetEquations equations_;
   Matrix6d H_ = Matrix6d::Zero();  // its lower triangle: all that LDLT reads
   double sigma_ = 1;
 };

@@ -3,6 +3,7 @@
 #define WIREPOSE_STAGES_REFINEMENT_H_
 
 #include "stages/edge_image.h"
+#include "stages/offset_equations.h"
 #include "stages/sample_edges.h"
 #include "stages/surface_fit.h"
 
@@ -17,9 +18,7 @@ struct RefineParams {
   float min_qualified_share = 0.4F;  // an edge with less support than this does not pull in the last iterations
   float max_rms_px = 1.25F;          // what fits worse after all iterations is no fit
   float sigma_floor_px = 0.3F;
-  // Standard deviations that the covariance is made of: of a sample, of an edge, of an image; and how much of the
-  // observed scatter of the edges' mean residuals (a variance) is added to that of an edge.
-  float noise_px = 0.4F, edge_px = 0.6F, image_px = 0.2F, scatter_gain = 6;
+  OffsetErrors errors{};
   SurfaceFitParams surface{};
 };
 
@@ -43,6 +42,7 @@ struct RefinedPose {
   Matrix6d covariance = Matrix6d::Identity();  // of PerturbLeft about the model origin: rotation, translation
   float rms_px = 0;                            // of the offsets that remain, weighted
   float position_sigma_m = 0;  // of the position, were all samples independent: what the visible edges determine
+  float shift_px = 0;          // of the right image against the left one, that fits best to this pose
   std::uint16_t inliers = 0;   // samples of both images within three sigma
   bool ok = false;             // enough edges were found, they fit, and the normal matrix had full rank
 };

@@ -31,6 +31,7 @@ void GatherEvidence(const VerifyParams& params, const VerifyInput& in, const Pre
                       scratch.rivals, out.rivals);
   out.disparity_px = MeanDisparity(scratch.samples);
   out.rms_px = pose.rms_px;
+  out.shift_px = pose.shift_px;
   out.uncertainty = pose.position_sigma_m / model.view.diameter_m;
 }
 
