@@ -78,9 +78,9 @@ void OffsetEquations::Sum(const OffsetRows& rows, Matrix6d& H, Vector6d& g) {
 void OffsetEquations::Solved(const Vector6d& twist) { shift_ = free_shift_ - gain_ * twist; }
 
 Matrix6d OffsetEquations::Spread(const OffsetRows& rows) const {
-  Matrix6d spread = Matrix6d::Zero(), edges = Matrix6d::Zero();
+  Matrix6d samples = Matrix6d::Zero(), edges = Matrix6d::Zero();
   Eigen::Matrix<double, 6, 4> image = Eigen::Matrix<double, 6, 4>::Zero();  // left x, y, right x, y
-  double scatter = 0, total = 0;
+  double squares = 0, scatter = 0, total = 0;
   ForEachEdge(rows, [&](const OffsetRow* begin, const OffsetRow* end) {
     const Vector8d bias = Bias(begin, end);
     Vector6d edge = Vector6d::Zero();
@@ -88,19 +88,21 @@ Matrix6d OffsetEquations::Spread(const OffsetRows& rows) const {
     for (const OffsetRow* row = begin; row != end; ++row) {
       const Vector8d pull = row->weight * (Derivative(*row) - bias);
       const Vector6d g = pull.head<6>() - gain_.transpose() * pull.tail<2>();
-      spread += Squared(errors_.noise_px) * g * g.transpose();
+      samples += g * g.transpose();
       edge += g;
       for (int k = 0; k < 2; ++k) image.col(2 * row->image + k) += static_cast<double>(row->normal[k]) * g;
       weight += row->weight;
       mean += row->weight * row->residual;
+      squares += row->weight * row->residual * row->residual;
     }
     if (weight <= 0) return;
     edges += edge * edge.transpose();
     scatter += mean * mean / weight;
     total += weight;
   });
-  const double extra = static_cast<double>(errors_.scatter_gain) * scatter / std::max(total, 1e-9);
-  spread += (Squared(errors_.edge_px) + extra) * edges;
+  const double gain = static_cast<double>(errors_.scatter_gain) / std::max(total, 1e-9);
+  Matrix6d spread = (Squared(errors_.noise_px) + gain * squares) * samples;
+  spread += (Squared(errors_.edge_px) + gain * scatter) * edges;
   spread += Squared(errors_.image_px) * image * image.transpose();
   return spread;
 }

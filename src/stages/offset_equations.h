@@ -10,13 +10,13 @@
 
 namespace wirepose {
 
-// Standard deviations, px, and how much of the observed scatter of the edges' mean residuals (a variance) is added to
-// that of an edge when the covariance is made.
+// Standard deviations, px. For the covariance so much of the residuals' mean square is added to the variance of a sample,
+// and of that of the edges' mean residuals to the variance of an edge: poses that fit badly are less certain.
 struct OffsetErrors {
   float noise_px = 0.4F;  // of every sample on its own
   float edge_px = 0.6F;   // common to all samples of an edge: it may lie on a shadow or on the next line of print
   float image_px = 0.2F;  // common to all samples of an image: its calibration, its blur
-  float scatter_gain = 6;
+  float scatter_gain = 4;
 };
 
 // One found offset with its derivative by the twist.
@@ -45,7 +45,7 @@ class OffsetEquations {
   void Sum(const OffsetRows& rows, Matrix6d& H, Vector6d& g);
   // What the equations of the last Sum say about the shift when the twist solves them.
   void Solved(const Vector6d& twist);
-  // Covariance of the right side of the last Sum. Errors of edges are taken from how much their mean residuals scatter.
+  // Covariance of the right side of the last Sum (the middle of the sandwich).
   [[nodiscard]] Matrix6d Spread(const OffsetRows& rows) const;
   // The variance for which a sample has weight 1, px^2.
   [[nodiscard]] double UnitVariance() const;
