@@ -86,8 +86,10 @@ struct RecognizerParams {
   CorrespondenceParams correspondences;
   HypothesisParams hypotheses;
   PromotionParams promotion;
-  RefineParams refine{.iterations = 4, .samples = {.step_px = 14}, .max_rms_px = 2.0F};  // from afar
-  RefineParams polish{.samples = {.step_px = 6}};                    // then with all that the images tell of the pose
+  // From where the line sets are; what fits badly may fit when all edges are looked at.
+  RefineParams refine{.iterations = 4, .samples = {.step_px = 14}, .max_rms_px = 2.0F};
+  // Then with all that the images tell of the pose.
+  RefineParams polish{.samples = {.step_px = 6}, .first_range_px = 6};
   VerifyParams verify;
   SelectParams select;
   AmbiguityParams ambiguity;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "base/simd.h"
 
 namespace wirepose {
@@ -9,7 +10,8 @@ namespace {
 
 using Scratch = DisparityScratch;
 constexpr int kDepth = kMapDisparities;
-constexpr std::uint8_t kGuard = 0xFF - 40;  // what a step adds still fits
+constexpr std::uint8_t kMaxSmallStep = 40;
+constexpr std::uint8_t kGuard = 0xFF - kMaxSmallStep;  // above all costs; what a step adds still fits
 
 // Means of 2 x 2 pixels of row pair j.
 WIREPOSE_VECTOR_KERNEL void HalveRow(const NormalizedPlane& plane, int j, int width, std::uint8_t* __restrict out) {
@@ -203,6 +205,7 @@ void ReadDifferences(const DisparityMapParams& params, const NormalizedPlane& le
 
 void ComputeDisparityMap(const DisparityMapParams& params, int width, int height, const NormalizedPlane& left,
                          const NormalizedPlane& right, DisparityScratch& scratch, DisparityMap& out) {
+  Check(params.small_step <= kMaxSmallStep && 9 * params.max_difference + params.large_step < kGuard);
   out.width = width / DisparityMap::kScale;
   out.height = height / DisparityMap::kScale;
   Scratch::Path start;

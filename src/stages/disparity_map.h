@@ -28,18 +28,19 @@ struct DisparityMap {
   }
 };
 
+// Costs must fit into bytes: small_step is at most 40, 9 max_difference + large_step at most 214.
 struct DisparityMapParams {
-  std::uint8_t small_step = 22;     // cost of a change by one between neighbours, beside sums of 3 x 3 differences ...
-  std::uint8_t large_step = 88;     // ... and of any larger change
+  std::uint8_t small_step = 22;      // cost of a change by one between neighbours, beside sums of 3 x 3 differences ...
+  std::uint8_t large_step = 88;      // ... and of any larger change
   std::uint8_t max_difference = 12;  // of two normalised values, in steps of kDifferenceStep: more says no more
-  int max_asymmetry = 1;            // between the maps of both images, half pixels
+  int max_asymmetry = 1;             // between the maps of both images, half pixels
 };
 
 inline constexpr int kMapDisparities = 80;  // half pixels: surfaces from 0.4 m at f*B = 63 px*m
 // Every second row of the map is matched and stands for the next one too: half the time, the same recognition.
 inline constexpr int kRowStep = 2;
 
-// Differences are counted in steps: so the costs of a path, at most 9 max_difference + large_step, fit into a byte.
+// Differences of normalised values are counted in steps: so the costs of a path fit into bytes.
 inline constexpr int kDifferenceStep = 8;
 
 // Work space; contents have no meaning between calls.

@@ -69,8 +69,7 @@ WIREPOSE_VECTOR_KERNEL void ScaleRows(int width, ValueSums& values, SquareSums& 
   constexpr float kShare = 1.0F / (kWindow * kWindow);
   for (int i = 0; i < (width + 1) / 2; ++i) {
     const float mean = static_cast<float>(values.window[static_cast<std::size_t>(i)]) * kShare;
-    const float variance =
-        static_cast<float>(squares.window[static_cast<std::size_t>(i)]) * kShare - mean * mean;
+    const float variance = static_cast<float>(squares.window[static_cast<std::size_t>(i)]) * kShare - mean * mean;
     const float gain = kGain / (std::sqrt(variance > 0 ? variance : 0.0F) + kNoiseFloor);
     const float offset = 128.5F - gain * mean;
     const auto x = static_cast<std::size_t>(2 * i);

@@ -1,4 +1,5 @@
-// Normal equations of the adjustment: offsets of image edges from model edges, weighed by how their errors hang together.
+// Normal equations of the adjustment: offsets of image edges from model edges, weighed by how their errors hang
+// together.
 #ifndef WIREPOSE_STAGES_OFFSET_EQUATIONS_H_
 #define WIREPOSE_STAGES_OFFSET_EQUATIONS_H_
 
@@ -10,8 +11,8 @@
 
 namespace wirepose {
 
-// Standard deviations, px. For the covariance so much of the residuals' mean square is added to the variance of a sample,
-// and of that of the edges' mean residuals to the variance of an edge: poses that fit badly are less certain.
+// Standard deviations, px. For the covariance so much of the residuals' mean square is added to the variance of a
+// sample, and of that of the edges' mean residuals to the variance of an edge: poses that fit badly are less certain.
 struct OffsetErrors {
   float noise_px = 0.4F;  // of every sample on its own
   float edge_px = 0.6F;   // common to all samples of an edge: it may lie on a shadow or on the next line of print
@@ -32,11 +33,11 @@ struct OffsetRow {
 // The rows of an edge follow each other.
 using OffsetRows = FixedVector<OffsetRow, 2 * kMaxEdgeSamples>;
 
-// Generalised least squares under the model of OffsetErrors: the offset that an edge's samples share in both images, and
-// the shift of the right image against the left one, are unknowns of known variance, eliminated by Schur complements. So
-// an edge that was taken for another one moves the pose little, and depth comes from the parallax, which such an edge
-// does not touch, rather than from the size. Shifts far above image_px count as errors of the calibration, which have
-// no limit: their variance grows with them (Geman-McClure).
+// Generalised least squares under the model of OffsetErrors: the offset that an edge's samples share in both images,
+// and the shift of the right image against the left one, are unknowns of known variance, eliminated by Schur
+// complements. So an edge that was taken for another one moves the pose little, and depth comes from the parallax,
+// which such an edge does not touch, rather than from the size. Shifts far above image_px count as errors of the
+// calibration, which have no limit: their variance grows with them (Geman-McClure).
 class OffsetEquations {
  public:
   explicit OffsetEquations(const OffsetErrors& errors) : errors_(errors) {}

@@ -13,7 +13,7 @@ struct RefineParams {
   int iterations = 6;
   SampleParams samples{.step_px = 8};
   float first_range_px = 8;  // 1D search along the edge normal; shrinks to last_range_px
-  float last_range_px = 3;
+  float last_range_px = 2;
   float min_gradient = 1.0F;         // grey levels per pixel: weaker edges are not followed
   float min_qualified_share = 0.4F;  // an edge with less support than this does not pull in the last iterations
   float max_rms_px = 1.25F;          // what fits worse after all iterations is no fit

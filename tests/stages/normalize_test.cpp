@@ -28,8 +28,7 @@ double ByFormula(const GrayImage& image, int x, int y) {
   double sum = 0, square = 0;
   for (int row = y / 2 * 2 - 6; row < y / 2 * 2 + 8; ++row) {
     for (int column = x / 2 * 2 - 6; column < x / 2 * 2 + 8; ++column) {
-      const double v =
-          image.view()(std::clamp(column, 0, image.width - 1), std::clamp(row, 0, image.height - 1));
+      const double v = image.view()(std::clamp(column, 0, image.width - 1), std::clamp(row, 0, image.height - 1));
       sum += v;
       square += v * v;
     }

@@ -23,12 +23,10 @@ from sklearn.ensemble import HistGradientBoostingClassifier
 DEPTH = 5
 RISING = {'visible_px', 'inside', 'support', 'sharp', 'sharp_of_support', 'full_edges', 'weakest_edge', 'distinct',
           'clear', 'dimmest_edge', 'outline', 'outline_distinct', 'inner_distinct', 'ends', 'corners',
-          'weakest_face', 'on', 'drop', 'stands', 'end_peak',
-          'moved_peak', 'turned_peak'}
+          'weakest_face', 'on', 'drop', 'stands', 'end_peak', 'moved_peak', 'turned_peak'}
 FALLING = {'chance', 'spread_px', 'parallax_px', 'weak_edges', 'overrun', 'crossed', 'crossing', 'crossings',
-           'inner_crossings', 'beyond', 'across', 'hidden', 'through', 'level', 'misfit', 'rms_px', 'shift_px', 'uncertainty',
-           'hangs',
-           'gap', 'rival_inward', 'rival_outward', 'rival_left', 'moved', 'turned'}
+           'inner_crossings', 'beyond', 'across', 'hidden', 'through', 'level', 'misfit', 'rms_px', 'shift_px',
+           'uncertainty', 'hangs', 'gap', 'rival_inward', 'rival_outward', 'rival_left', 'moved', 'turned'}
 STAGES = pathlib.Path(__file__).resolve().parents[2] / 'src/stages'
 
 
