@@ -60,7 +60,7 @@ TEST_F(SelectionTest, BestFirstAndNoneBelowTheLimit) {
 TEST_F(SelectionTest, DuplicatesMerge) {
   Candidate moved = At(0, 0.02, 0.01, 2, 0.8F), turned = At(0, 0, 0, 2, 0.7F);
   turned.pose.T_camera_model = turned.pose.T_camera_model * models_->front().symmetries[1];
-  EXPECT_EQ(Select({At(0, 0, 0, 2, 0.9F), moved, turned, At(0, 0.6, 0, 2, 0.6F)}), (std::vector{0, 3}));
+  EXPECT_EQ(Select({At(0, 0, 0, 2, 0.9F), moved, turned, At(0, 0.6, 0, 2, 0.68F)}), (std::vector{0, 3}));
 }
 
 // Edges that explain one object cannot explain another one at the same place.

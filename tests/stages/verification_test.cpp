@@ -181,17 +181,26 @@ TEST_F(VerificationTest, DistinctEdges) {
   EXPECT_GE(beaten, count - 1);
 }
 
+// On average over views: the map is wrong in places, more in one view than in another.
 TEST_F(VerificationTest, SurfacesOfTheSceneAgree) {
   Random random(10);
-  const Pose T = testing::GoodView(random, *model_);
-  const RenderedScene scene = Show(T, sim::Texture::kLabel, 11);
-  const SurfaceEvidence right = Gather(scene, T).surface;
-  EXPECT_GT(right.on, 0.7F);
-  EXPECT_GT(right.drop, 0.3F);
-  EXPECT_LT(right.through, 0.1F);
-  Pose nearer = T;
-  nearer.t *= 0.85;
-  EXPECT_GT(Gather(scene, nearer).surface.through, 0.5F);
+  const int views = Cases(10);
+  SurfaceEvidence sum;
+  for (int v = 0; v < views; ++v) {
+    const Pose T = testing::GoodView(random, *model_);
+    const RenderedScene scene = Show(T, sim::Texture::kLabel, 11 + static_cast<std::uint64_t>(v));
+    const SurfaceEvidence right = Gather(scene, T).surface;
+    sum.on += right.on;
+    sum.drop += right.drop;
+    sum.through += right.through;
+    Pose nearer = T;
+    nearer.t *= 0.85;
+    EXPECT_GT(Gather(scene, nearer).surface.through, 0.5F) << v;
+  }
+  const auto n = static_cast<float>(views);
+  EXPECT_GT(sum.on, 0.8F * n);
+  EXPECT_GT(sum.drop, 0.3F * n);
+  EXPECT_LT(sum.through, 0.1F * n);
 }
 
 TEST_F(VerificationTest, NothingInTheImagesSpeaksAgainst) {
