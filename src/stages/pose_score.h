@@ -13,7 +13,7 @@ struct PoseScoreParams {
   float support_rate = 0.75F;  // share of a true object's visible edge samples that show an edge
   float sample_weight = 0.5F;  // neighbouring samples are not independent
   float min_inside = 0.4F;     // share of the visible edge length that lies in the left image
-  // A pose whose longest visible edges (this many) have less support than this is given up.
+  // From this many of its longest visible edges on, a pose that has less support so far is given up.
   int first_edges = 6;
   float min_first_support = 0.35F;
 };
