@@ -316,7 +316,8 @@ SceneImages Recognizer::ImagesFor(const RefineParams& params) const {
   return {camera(), left_smooth_, right_smooth_, surface ? &disparity_ : nullptr};
 }
 
-// Right poses and others differ more when they lie where their edges are: what the second pass cannot improve stays.
+// Right poses and others differ more when they lie where their edges are: where the second pass does not fit, the pose
+// of the first one stays.
 void Recognizer::Adjust(const PreparedModel& model, const Pose& start, RefinedPose& out) {
   RefinePose(params_.refine, ImagesFor(params_.refine), model, start, refine_scratch_, out);
   if (!out.ok) return;

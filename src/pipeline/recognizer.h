@@ -86,7 +86,7 @@ struct RecognizerParams {
   CorrespondenceParams correspondences;
   HypothesisParams hypotheses;
   PromotionParams promotion;
-  // From where the line sets are; what fits badly may fit when all edges are looked at.
+  // From where the line sets are. What fits badly may fit when all samples are looked at; if not, it is still judged.
   RefineParams refine{.iterations = 4, .samples = {.step_px = 14}, .max_rms_px = 2.0F};
   // Then with all that the images tell of the pose.
   RefineParams polish{.samples = {.step_px = 6}, .first_range_px = 6};

@@ -66,7 +66,7 @@ struct Evidence {
   SurfaceEvidence surface;  // of the disparity map, inside the silhouette and beside it
   float disparity_px = 0;   // of the object's edges, mean: how well depth can be told
   float rms_px = 0;         // what the refinement left
-  float shift_px = 0;       // of the right image against the left one, that brings most edges of both onto the model
+  float shift_px = 0;       // length of the right image's estimated shift against the left one
   float uncertainty = 0;    // of the position by what the visible edges determine, over the diameter
   GroundEvidence ground;    // of the disparity map, around what the object may stand on
   RivalEvidence rivals;     // of image edges at other sizes and poses

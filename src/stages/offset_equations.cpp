@@ -1,7 +1,6 @@
 #include "stages/offset_equations.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace wirepose {
 namespace {
@@ -29,7 +28,7 @@ OffsetEquations::Vector8d OffsetEquations::Derivative(const OffsetRow& row) {
 }
 
 // What the samples of an edge share is no news: their mean derivative, shrunk by what is known of the common offset.
-OffsetEquations::Vector8d OffsetEquations::Bias(const OffsetRow* begin, const OffsetRow* end) const {
+OffsetEquations::Vector8d OffsetEquations::SharedDerivative(const OffsetRow* begin, const OffsetRow* end) const {
   Vector8d sum = Vector8d::Zero();
   double weight = 0;
   for (const OffsetRow* row = begin; row != end; ++row) {
@@ -52,10 +51,10 @@ void OffsetEquations::Sum(const OffsetRows& rows, Matrix6d& H, Vector6d& g) {
   Matrix8d N = Matrix8d::Zero();  // lower triangle
   Vector8d b = Vector8d::Zero();
   ForEachEdge(rows, [&](const OffsetRow* begin, const OffsetRow* end) {
-    const Vector8d bias = Bias(begin, end);
+    const Vector8d shared = SharedDerivative(begin, end);
     for (const OffsetRow* row = begin; row != end; ++row) {
       const Vector8d d = Derivative(*row);
-      const Vector8d pull = row->weight * (d - bias);
+      const Vector8d pull = row->weight * (d - shared);
       for (int c = 0; c < 8; ++c) {
         for (int i = c; i < 8; ++i) N(i, c) += pull(i) * d(c);
       }
@@ -75,18 +74,18 @@ void OffsetEquations::Sum(const OffsetRows& rows, Matrix6d& H, Vector6d& g) {
   g = b.head<6>() - gain_.transpose() * b.tail<2>();
 }
 
-void OffsetEquations::Solved(const Vector6d& twist) { shift_ = free_shift_ - gain_ * twist; }
+void OffsetEquations::UpdateShift(const Vector6d& twist) { shift_ = free_shift_ - gain_ * twist; }
 
 Matrix6d OffsetEquations::Spread(const OffsetRows& rows) const {
   Matrix6d samples = Matrix6d::Zero(), edges = Matrix6d::Zero();
   Eigen::Matrix<double, 6, 4> image = Eigen::Matrix<double, 6, 4>::Zero();  // left x, y, right x, y
   double squares = 0, scatter = 0, total = 0;
   ForEachEdge(rows, [&](const OffsetRow* begin, const OffsetRow* end) {
-    const Vector8d bias = Bias(begin, end);
+    const Vector8d shared = SharedDerivative(begin, end);
     Vector6d edge = Vector6d::Zero();
     double weight = 0, mean = 0;
     for (const OffsetRow* row = begin; row != end; ++row) {
-      const Vector8d pull = row->weight * (Derivative(*row) - bias);
+      const Vector8d pull = row->weight * (Derivative(*row) - shared);
       const Vector6d g = pull.head<6>() - gain_.transpose() * pull.tail<2>();
       samples += g * g.transpose();
       edge += g;

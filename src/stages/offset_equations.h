@@ -11,12 +11,13 @@
 
 namespace wirepose {
 
-// Standard deviations, px. For the covariance so much of the residuals' mean square is added to the variance of a
-// sample, and of that of the edges' mean residuals to the variance of an edge: poses that fit badly are less certain.
+// Standard deviations, px.
 struct OffsetErrors {
   float noise_px = 0.4F;  // of every sample on its own
   float edge_px = 0.6F;   // common to all samples of an edge: it may lie on a shadow or on the next line of print
   float image_px = 0.2F;  // common to all samples of an image: its calibration, its blur
+  // For the covariance alone, since poses that fit badly are less certain: times the residuals' weighted mean square is
+  // added to noise_px^2, times that of the edges' mean residuals to edge_px^2.
   float scatter_gain = 4;
 };
 
@@ -27,25 +28,27 @@ struct OffsetRow {
   double weight = 0;
   std::uint16_t edge = 0;
   std::uint8_t image = 0;            // 0: left
-  Vector2 normal = Vector2::Zero();  // as measured: a thousand rows lie on the stack
+  Vector2 normal = Vector2::Zero();  // float: a thousand rows lie on the stack
 };
 
 // The rows of an edge follow each other.
 using OffsetRows = FixedVector<OffsetRow, 2 * kMaxEdgeSamples>;
 
-// Generalised least squares under the model of OffsetErrors: the offset that an edge's samples share in both images,
-// and the shift of the right image against the left one, are unknowns of known variance, eliminated by Schur
-// complements. So an edge that was taken for another one moves the pose little, and depth comes from the parallax,
-// which such an edge does not touch, rather than from the size. Shifts far above image_px count as errors of the
-// calibration, which have no limit: their variance grows with them (Geman-McClure).
+// Generalised least squares under the model of OffsetErrors: the offset b_e that an edge's samples share in both
+// images, and the shift s of the right image against the left one, are unknowns of known variance, eliminated by Schur
+// complements. For the twist x
+//   sum w (r - J x - b_e - [right] n . s)^2 / noise_px^2 + sum b_e^2 / edge_px^2 + |s|^2 / (2 image_px^2)
+// is least. So an edge that was taken for another one moves the pose little, and depth comes from the parallax, which
+// such an edge does not touch, rather than from the size. Shifts far above image_px count as errors of the calibration,
+// which have no limit: their variance grows with them (Geman-McClure).
 class OffsetEquations {
  public:
   explicit OffsetEquations(const OffsetErrors& errors) : errors_(errors) {}
 
   // Of the weighted rows: the normal matrix (its lower triangle) and the right side. O(rows).
   void Sum(const OffsetRows& rows, Matrix6d& H, Vector6d& g);
-  // What the equations of the last Sum say about the shift when the twist solves them.
-  void Solved(const Vector6d& twist);
+  // Takes over what the equations of the last Sum say about the shift when the twist solves them.
+  void UpdateShift(const Vector6d& twist);
   // Covariance of the right side of the last Sum (the middle of the sandwich).
   [[nodiscard]] Matrix6d Spread(const OffsetRows& rows) const;
   // The variance for which a sample has weight 1, px^2.
@@ -58,10 +61,10 @@ class OffsetEquations {
   using Vector8d = Eigen::Matrix<double, 8, 1>;
   using Matrix8d = Eigen::Matrix<double, 8, 8>;
   static Vector8d Derivative(const OffsetRow& row);
-  [[nodiscard]] Vector8d Bias(const OffsetRow* begin, const OffsetRow* end) const;
+  [[nodiscard]] Vector8d SharedDerivative(const OffsetRow* begin, const OffsetRow* end) const;
   [[nodiscard]] double ShiftInformation() const;
 
-  const OffsetErrors& errors_;
+  OffsetErrors errors_;
   Eigen::Vector2d shift_ = Eigen::Vector2d::Zero();
   Eigen::Vector2d free_shift_ = Eigen::Vector2d::Zero();  // the shift when the pose stays as it is ...
   Eigen::Matrix<double, 2, 6> gain_ = Eigen::Matrix<double, 2, 6>::Zero();  // ... less this by the twist

@@ -152,7 +152,7 @@ class Refiner {
     // A step beyond 0.2 rad or a fifth of the distance has left what one linearisation can say.
     const double size = std::max(twist.head<3>().norm() / 0.2, twist.tail<3>().norm() / 0.2);
     if (size > 1) twist /= size;
-    equations_.Solved(twist);
+    equations_.UpdateShift(twist);
     return true;
   }
 

@@ -41,20 +41,21 @@ struct RefinedPose {
   Pose T_camera_model;
   Matrix6d covariance = Matrix6d::Identity();  // of PerturbLeft about the model origin: rotation, translation
   float rms_px = 0;                            // of the offsets that remain, weighted
-  float position_sigma_m = 0;  // of the position, by the scatter of the samples alone: what the edges determine
-  float shift_px = 0;          // of the right image against the left one, that fits best to this pose
-  std::uint16_t inliers = 0;   // samples of both images within three sigma
-  bool ok = false;             // enough edges were found, they fit, and the normal matrix had full rank
+  float position_sigma_m =
+      0;               // of the position, by the normal matrix and the samples' scatter: what the edges determine
+  float shift_px = 0;  // length of the right image's estimated shift against the left one; 0 without it
+  std::uint16_t inliers = 0;  // samples of both images within three sigma
+  bool ok = false;            // enough edges were found, they fit, and the normal matrix had full rank
 };
 
 // Robust Gauss-Newton on SE(3). The closest image feature of eq. 11 is searched along the normal of the projected edge
-// (RAPiD: Harris & Stennett 1990) in both images; all offsets enter one normal matrix, with Geman-McClure weights and by
-// how their errors hang together (offset_equations.h). The search range shrinks from iteration to iteration; hidden lines
-// are found at the start and anew half way. Only qualified features count at the end: edges of which a good share was
-// found. With a disparity map the visible faces are drawn onto the measured surfaces by the same steps (surface_fit.h).
-// The covariance is the sandwich estimate for clustered errors (Liang & Zeger 1986): samples share the errors of their
-// edge and of their image. `ok` is false, and the pose the start, where fewer than 12 offsets are found or they do not
-// determine it. No heap, no state. O(iterations * samples * range).
+// (RAPiD: Harris & Stennett 1990) in both images; all offsets enter one normal matrix, with Geman-McClure weights and
+// by how their errors hang together (offset_equations.h). The search range shrinks from iteration to iteration; hidden
+// lines are found at the start and anew half way. Only qualified features count at the end: edges of which a good share
+// was found. With a disparity map the visible faces are drawn onto the measured surfaces by the same steps
+// (surface_fit.h). The covariance is the sandwich estimate for clustered errors (Liang & Zeger 1986): samples share the
+// errors of their edge and of their image. `ok` is false, and the pose the start, where fewer than 12 offsets are found
+// or they do not determine it. No heap, no state. O(iterations * samples * range).
 void RefinePose(const RefineParams& params, const SceneImages& images, const PreparedModel& model, const Pose& start,
                 RefineScratch& scratch, RefinedPose& out);
 

@@ -10,7 +10,7 @@
 namespace wirepose {
 
 struct SelectParams {
-  float min_score = 0.65F;    // lower ones are not reported: of those below nearly as many are wrong as right
+  float min_score = 0.65F;    // lower ones are not reported: just below, alarms in empty scenes counted, half are wrong
   float max_claimed = 0.35F;  // share of a candidate's supported edges that stronger detections may own
 };
 

@@ -131,6 +131,17 @@ class Twin {
   std::vector<int> sum_, raw_;
 };
 
+void ExpectAsTwin(const GrayImage& left, const GrayImage& right) {
+  const auto map = MapOf(left, right);
+  const Twin twin(left, right);
+  for (int y = 0; y < map->height; ++y) {
+    for (int x = 0; x < map->width; ++x) {
+      ASSERT_EQ(map->disparity[static_cast<std::size_t>(y * DisparityMap::kMaxWidth + x)], twin.At(x, y))
+          << x << " " << y;
+    }
+  }
+}
+
 TEST(DisparityMap, AgreesWithTheTwin) {
   Random random(3);
   for (int k = 0; k < testing::Cases(10); ++k) {
@@ -141,14 +152,17 @@ TEST(DisparityMap, AgreesWithTheTwin) {
     const GrayImage right = Paint(96, 30, [&](int x, int y) {
       return 128 + 100 * testing::Texture(x + shift + slope * y, y, 5, seed) + random.Uniform(-8, 8);
     });
-    const auto map = MapOf(left, right);
-    const Twin twin(left, right);
-    for (int y = 0; y < map->height; ++y) {
-      for (int x = 0; x < map->width; ++x) {
-        ASSERT_EQ(map->disparity[static_cast<std::size_t>(y * DisparityMap::kMaxWidth + x)], twin.At(x, y))
-            << x << " " << y;
-      }
-    }
+    ExpectAsTwin(left, right);
+  }
+}
+
+// Costs as high as they get, in odd and in the smallest sizes.
+TEST(DisparityMap, AgreesWithTheTwinOnBlackAndWhite) {
+  Random random(7);
+  const auto noise = [&](int, int) { return random.Uniform(0, 1) < 0.5 ? 0 : 255; };
+  for (const auto& [width, height] : {std::pair(64, 64), {65, 67}, {200, 31}}) {
+    ExpectAsTwin(Paint(width, height, noise), Paint(width, height, noise));
+    ExpectAsTwin(Paint(width, height, [](int, int) { return 0; }), Paint(width, height, [](int, int) { return 255; }));
   }
 }
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
+#include <cmath>
 
 #include "stage_test_support.h"
 
@@ -39,71 +39,122 @@ OffsetRows RandomRows(Random& random, int edges) {
   return rows;
 }
 
+double Squared(float x) { return std::pow(static_cast<double>(x), 2); }
+
+double ShiftVariance() { return 2 * Squared(kErrors.image_px); }
+
 // The slow twin: every pair of offsets has its covariance.
 struct Dense {
-  Eigen::MatrixXd J, information;
+  Eigen::MatrixXd J, normals,
+      information;  // derivatives by the twist, by the shift; inverse covariance times noise_px^2
   Eigen::VectorXd residual;
 
   Dense(const OffsetRows& rows, double shift_variance) {
     const auto n = static_cast<Eigen::Index>(rows.size());
     J.resize(n, 6);
+    normals.setZero(n, 2);
     residual.resize(n);
     Eigen::MatrixXd covariance(n, n);
-    const double noise = std::pow(double{kErrors.noise_px}, 2), edge = std::pow(double{kErrors.edge_px}, 2);
     for (Eigen::Index i = 0; i < n; ++i) {
       const OffsetRow& p = rows[static_cast<std::size_t>(i)];
       J.row(i) = p.J;
       residual(i) = p.residual;
+      if (p.image == 1) normals.row(i) = p.normal.cast<double>();
       for (Eigen::Index j = 0; j < n; ++j) {
         const OffsetRow& q = rows[static_cast<std::size_t>(j)];
-        covariance(i, j) = (i == j ? noise / p.weight : 0) + (p.edge == q.edge ? edge : 0);
-        if (p.image == 1 && q.image == 1) {
-          covariance(i, j) += shift_variance * p.normal.cast<double>().dot(q.normal.cast<double>());
-        }
+        covariance(i, j) =
+            (i == j ? Squared(kErrors.noise_px) / p.weight : 0) + (p.edge == q.edge ? Squared(kErrors.edge_px) : 0);
       }
     }
-    information = noise * covariance.inverse();
+    covariance += shift_variance * normals * normals.transpose();
+    information = Squared(kErrors.noise_px) * covariance.inverse();
+  }
+
+  [[nodiscard]] Matrix6d H() const { return J.transpose() * information * J; }
+  [[nodiscard]] Vector6d g() const { return J.transpose() * information * residual; }
+  // The most probable shift at a twist.
+  [[nodiscard]] Eigen::Vector2d Shift(const Vector6d& twist, double shift_variance) const {
+    return shift_variance / Squared(kErrors.noise_px) * normals.transpose() * information * (residual - J * twist);
   }
 };
+
+void ExpectSums(OffsetEquations& equations, const OffsetRows& rows, const Dense& dense) {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d g;
+  equations.Sum(rows, H, g);
+  const Matrix6d whole = H.selfadjointView<Eigen::Lower>();
+  ASSERT_LT((whole - dense.H()).norm(), 1e-9 * (1 + dense.H().norm()));
+  ASSERT_LT((g - dense.g()).norm(), 1e-9 * (1 + dense.g().norm()));
+}
 
 TEST(OffsetEquations, AreGeneralisedLeastSquares) {
   Random random(1);
   for (int k = 0; k < Cases(300); ++k) {
     const OffsetRows rows = RandomRows(random, 1 + k % 8);
     OffsetEquations equations(kErrors);
-    Matrix6d H = Matrix6d::Zero();
-    Vector6d g;
-    equations.Sum(rows, H, g);
-    const Dense dense(rows, 2 * std::pow(double{kErrors.image_px}, 2));
-    const Matrix6d expected = dense.J.transpose() * dense.information * dense.J;
-    const Vector6d right = dense.J.transpose() * dense.information * dense.residual;
-    const Matrix6d lower = H.triangularView<Eigen::Lower>();
-    const Matrix6d expected_lower = expected.triangularView<Eigen::Lower>();
-    ASSERT_LT((lower - expected_lower).norm(), 1e-9 * (1 + expected.norm())) << k;
-    ASSERT_LT((g - right).norm(), 1e-9 * (1 + right.norm())) << k;
+    ExpectSums(equations, rows, Dense(rows, ShiftVariance()));
   }
 }
 
-// Were the residuals as the model says, their sum would have the covariance that Spread gives: no less.
-TEST(OffsetEquations, SpreadCoversTheModel) {
+// The variance of the shift grows with the shift that was found.
+TEST(OffsetEquations, LargeShiftsAreBelieved) {
+  Random random(6);
+  double largest = 0;
+  for (int k = 0; k < Cases(300); ++k) {
+    const OffsetRows rows = RandomRows(random, 2 + k % 8);
+    OffsetEquations equations(kErrors);
+    const Dense first(rows, ShiftVariance());
+    ExpectSums(equations, rows, first);
+    const Vector6d twist = random.Uniform(0, 0.02) * Vector6d::Ones();
+    equations.UpdateShift(twist);
+    const Eigen::Vector2d shift = first.Shift(twist, ShiftVariance());
+    ASSERT_LT((equations.shift() - shift).norm(), 1e-9 * (1 + shift.norm()));
+    const double share = 1 / (1 + shift.squaredNorm() / (4 * ShiftVariance()));
+    ExpectSums(equations, rows, Dense(rows, ShiftVariance() / (share * share)));
+    largest = std::max(largest, shift.norm());
+  }
+  EXPECT_GT(largest, 3 * std::sqrt(ShiftVariance()));
+}
+
+// The covariance of the right side, were the residuals' errors those of the model: of a sample and of an edge by what
+// the residuals show, of each image as it is.
+TEST(OffsetEquations, SpreadIsTheCovarianceOfTheRightSide) {
   Random random(2);
-  OffsetErrors errors;
-  errors.scatter_gain = 0;
-  for (int k = 0; k < Cases(100); ++k) {
-    OffsetRows rows = RandomRows(random, 6);
-    for (OffsetRow& row : rows) row.weight = 1;
+  for (int k = 0; k < Cases(200); ++k) {
+    OffsetErrors errors;
+    if (k % 2 == 0) errors.scatter_gain = 0;
+    const OffsetRows rows = RandomRows(random, 1 + k % 8);
     OffsetEquations equations(errors);
     Matrix6d H = Matrix6d::Zero();
     Vector6d g;
     equations.Sum(rows, H, g);
-    const Matrix6d spread = equations.Spread(rows);
-    const Matrix6d expected = std::pow(double{errors.noise_px}, 2) * Matrix6d(H.selfadjointView<Eigen::Lower>());
-    // With unit weights the covariance of the right side is the normal matrix times the unit variance. Spread has a
-    // common error of the left image beside.
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> difference(spread - expected);
-    EXPECT_GT(difference.eigenvalues().minCoeff(), -0.05 * expected.trace()) << k;
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> whole(spread);
-    EXPECT_GT(whole.eigenvalues().minCoeff(), 0) << k;
+    double squares = 0, total = 0, scatter = 0;
+    for (std::size_t begin = 0, end = 0; begin < rows.size(); begin = end) {
+      double weight = 0, mean = 0;
+      for (; end < rows.size() && rows[end].edge == rows[begin].edge; ++end) {
+        weight += rows[end].weight;
+        mean += rows[end].weight * rows[end].residual;
+        squares += rows[end].weight * rows[end].residual * rows[end].residual;
+      }
+      scatter += mean * mean / weight;
+      total += weight;
+    }
+    const double gain = static_cast<double>(errors.scatter_gain) / std::max(total, 1e-9);
+    const auto n = static_cast<Eigen::Index>(rows.size());
+    Eigen::MatrixXd covariance(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const OffsetRow &p = rows[static_cast<std::size_t>(i)], &q = rows[static_cast<std::size_t>(j)];
+        covariance(i, j) =
+            (i == j ? Squared(errors.noise_px) + gain * squares : 0) +
+            (p.edge == q.edge ? Squared(errors.edge_px) + gain * scatter : 0) +
+            (p.image == q.image ? Squared(errors.image_px) * p.normal.cast<double>().dot(q.normal.cast<double>()) : 0);
+      }
+    }
+    const Dense dense(rows, ShiftVariance());
+    const Eigen::MatrixXd A = dense.J.transpose() * dense.information;
+    const Matrix6d expected = A * covariance * A.transpose();
+    ASSERT_LT((equations.Spread(rows) - expected).norm(), 1e-9 * (1 + expected.norm())) << k;
   }
 }
 
@@ -124,7 +175,7 @@ TEST(OffsetEquations, FindTheShiftOfTheRightImage) {
       Vector6d g;
       equations.Sum(rows, H, g);
       solved = Matrix6d(H.selfadjointView<Eigen::Lower>()).ldlt().solve(g);
-      equations.Solved(solved);
+      equations.UpdateShift(solved);
     }
     EXPECT_NEAR(equations.shift().x(), shift, 0.15 * shift) << shift;
     EXPECT_NEAR(equations.shift().y(), 0, 0.1 * shift) << shift;
@@ -169,7 +220,7 @@ TEST(OffsetEquations, NoRowsAndOneImageAreNoTrouble) {
   OffsetRows rows = RandomRows(random, 5);
   for (OffsetRow& row : rows) row.image = 0;
   equations.Sum(rows, H, g);
-  equations.Solved(Vector6d::Ones());
+  equations.UpdateShift(Vector6d::Ones());
   EXPECT_EQ(equations.shift().norm(), 0);
 }
 
