@@ -19,7 +19,7 @@ struct Member {
 };
 
 constexpr Member kMembers[] = {
-    {"rectification maps", sizeof(Rectification), 1, "one node every 16 px",
+    {"rectification maps", sizeof(Rectification), 1, "one node every 8 px",
      "both eyes; between nodes positions are linear"},
     {"prepared models", sizeof(PreparedModel), kMaxModels, "kMaxModels, kMaxModelEdges, kMaxModelSetMembers",
      "what matching reads of each model"},
