@@ -23,8 +23,8 @@ struct OffsetErrors {
 
 // One found offset with its derivative by the twist.
 struct OffsetRow {
-  Eigen::Matrix<double, 1, 6> J;
-  double residual = 0;  // px, image edge minus model edge along the normal
+  Eigen::Matrix<double, 1, 6> J;  // px by rad and m: PerturbLeft about the model origin
+  double residual = 0;            // px, image edge minus model edge along the normal
   double weight = 0;
   std::uint16_t edge = 0;
   std::uint8_t image = 0;            // 0: left
@@ -39,13 +39,15 @@ using OffsetRows = FixedVector<OffsetRow, 2 * kMaxEdgeSamples>;
 // complements. For the twist x
 //   sum w (r - J x - b_e - [right] n . s)^2 / noise_px^2 + sum b_e^2 / edge_px^2 + |s|^2 / (2 image_px^2)
 // is least. So an edge that was taken for another one moves the pose little, and depth comes from the parallax, which
-// such an edge does not touch, rather than from the size. Shifts far above image_px count as errors of the calibration,
-// which have no limit: their variance grows with them (Geman-McClure).
+// such an edge does not touch, rather than from the size. Shifts far above image_px count as errors of the calibration
+// or of the object's size, which have no limit: their variance grows with them (Geman-McClure). Source: mixed models,
+// Laird & Ware 1982. No heap.
 class OffsetEquations {
  public:
   explicit OffsetEquations(const OffsetErrors& errors) : errors_(errors) {}
 
-  // Of the weighted rows: the normal matrix (its lower triangle) and the right side. O(rows).
+  // Of the weighted rows, in px^2: the normal matrix of the twist [rad, m] (its lower triangle; the rest stays as it
+  // is) and the right side. No rows give zeros. O(rows).
   void Sum(const OffsetRows& rows, Matrix6d& H, Vector6d& g);
   // Takes over what the equations of the last Sum say about the shift when the twist solves them.
   void UpdateShift(const Vector6d& twist);
